@@ -1,0 +1,1 @@
+"""SymPy only: frames, energies, equations of motion, friction and drive terms."""
