@@ -1,0 +1,1 @@
+"""Regressors, fits, thresholds, and generated observers run over recordings."""
