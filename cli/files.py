@@ -19,7 +19,9 @@ def write_tree(folder: Path, files: Mapping[str, str], option: str = "--out") ->
         folder.mkdir(parents=True, exist_ok=True)
         staging = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
     except OSError as error:
-        raise InputError(f"{option} {folder}: cannot be written: {error.strerror}; nothing was changed") from None
+        raise InputError(
+            f"{option} {folder}: cannot be written: {error.strerror}; nothing was changed"
+        ) from None
     try:
         for name, text in files.items():
             (staging / name).write_text(text, encoding="utf-8", newline="\n")
@@ -31,7 +33,9 @@ def write_tree(folder: Path, files: Mapping[str, str], option: str = "--out") ->
         for name in files:
             (staging / name).replace(folder / name)
     except OSError as error:
-        raise InputError(f"{option} {folder}: cannot be written: {error.strerror}; nothing was changed") from None
+        raise InputError(
+            f"{option} {folder}: cannot be written: {error.strerror}; nothing was changed"
+        ) from None
     finally:
         shutil.rmtree(staging, ignore_errors=True)
 

@@ -25,17 +25,42 @@ def _numbers(text: str, option: str, count: int | None = None) -> tuple[float, .
 
 @click.command(epilog="Example: gen-model --dof 3 --robot ur5e --out generated")
 @click.option("--dof", type=int, help="Moving joints, 1 to 6; the rest is rigid.  [required without --model]")
-@click.option("--robot", default="ur5e", show_default=True, help="ur3e, ur5e, ur10e, ur16e, or a robot FILE.toml.")
-@click.option("--model", "model_file", type=click.Path(path_type=Path), help="Generate from a model.toml instead.")
-@click.option("--out", default="generated", show_default=True, type=click.Path(path_type=Path), help="Parent folder.")
-@click.option("--current-source", type=click.Choice(["modbus", "rtde"]), default="modbus", show_default=True,
-              help="Where the URScript reads motor currents.")
-@click.option("--reaction", type=click.Choice(["hold", "freedrive", "retract"]), default="freedrive",
-              show_default=True, help="What the URScript does after a collision.")
-@click.option("--variant", type=click.Choice(["full", "thesis"]), default="full", show_default=True,
-              help="thesis: the model of Gylling 2019, its omissions included.")
-@click.option("--locked-angles", metavar="DEG,..", help="Angles of the joints left out, degrees.  [default: 0]")
-@click.option("--gravity", metavar="X,Y,Z", help="Free fall in the base frame, m/s^2.  [default: the robot's]")
+@click.option(
+    "--robot", default="ur5e", show_default=True, help="ur3e, ur5e, ur10e, ur16e, or a robot FILE.toml."
+)
+@click.option(
+    "--model", "model_file", type=click.Path(path_type=Path), help="Generate from a model.toml instead."
+)
+@click.option(
+    "--out", default="generated", show_default=True, type=click.Path(path_type=Path), help="Parent folder."
+)
+@click.option(
+    "--current-source",
+    type=click.Choice(["modbus", "rtde"]),
+    default="modbus",
+    show_default=True,
+    help="Where the URScript reads motor currents.",
+)
+@click.option(
+    "--reaction",
+    type=click.Choice(["hold", "freedrive", "retract"]),
+    default="freedrive",
+    show_default=True,
+    help="What the URScript does after a collision.",
+)
+@click.option(
+    "--variant",
+    type=click.Choice(["full", "thesis"]),
+    default="full",
+    show_default=True,
+    help="thesis: the model of Gylling 2019, its omissions included.",
+)
+@click.option(
+    "--locked-angles", metavar="DEG,..", help="Angles of the joints left out, degrees.  [default: 0]"
+)
+@click.option(
+    "--gravity", metavar="X,Y,Z", help="Free fall in the base frame, m/s^2.  [default: the robot's]"
+)
 @click.option("--gain", type=float, help="Observer gain, 1/s.  [default: 25]")
 def gen_model(
     dof: int | None,
@@ -56,18 +81,21 @@ def gen_model(
     """
     # SymPy and CasADi take half a second to import; --help need not wait for them.
     from ..codegen.check import TOLERANCE, worst_disagreement
-    from ..codegen.functions import listings, symbolic_model
+    from ..codegen.functions import listings, operation_count, symbolic_model
     from ..codegen.generate import Options, render
     from ..robots import load_robot
     from ..robots.model import Model
     from ..robots.toml import read
     from ..symbolic.nominal import nominal_model
 
+    counts: list[tuple[str, int]] = []
     with stages(5) as bar:
         bar.begin("deriving")
         if model_file is not None:
             if dof is not None:
-                raise InputError("--dof: a model file says how many joints it has; leave --dof out with --model")
+                raise InputError(
+                    "--dof: a model file says how many joints it has; leave --dof out with --model"
+                )
             model, _ = read(Model, model_file)
         elif dof is None:
             raise InputError("--dof: say how many joints move, 1 to 6, such as --dof 3")
@@ -76,6 +104,11 @@ def gen_model(
             if gravity is not None:
                 data = data.model_copy(update={"gravity": _numbers(gravity, "--gravity", 3)})
             model = nominal_model(data, digest, dof, _radians(locked_angles), variant)
+            if variant == "full" and dof < len(data.joint):
+                alone = symbolic_model(nominal_model(data, digest, dof, wrist="absent")).without_rotors()
+                counts = [
+                    (f"momentum and beta of links 1-{dof} alone, without rotors", operation_count(alone))
+                ]
         if gain is not None:
             if not 0 < gain < 1000:
                 raise InputError(f"--gain {gain:g}: give a number between 0 and 1000 1/s")
@@ -84,11 +117,13 @@ def gen_model(
         bar.begin("reducing")
         found = listings(symbolic)
         bar.begin("printing")
-        generated = render(symbolic, found, Options(current_source, reaction))
+        generated = render(symbolic, found, Options(current_source, reaction), counts)
         bar.begin("checking against SymPy")
         worst = worst_disagreement(symbolic, generated.files["observer.py"])
         if worst > TOLERANCE:
-            raise RuntimeError(f"generated code differs from the equations by {worst:.1e}; nothing was written")
+            raise RuntimeError(
+                f"generated code differs from the equations by {worst:.1e}; nothing was written"
+            )
         bar.begin("writing")
         write_tree(out / model.name, generated.files)
     core = found["momentum_and_beta"].operations

@@ -18,22 +18,24 @@ VERBS = {
 class Verbs(click.Group):
     """A group that imports a verb when it is needed."""
 
-    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002, D102
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: D102
         return list(VERBS)
 
-    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:  # noqa: ARG002, D102
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:  # noqa: D102
         if cmd_name not in VERBS:
             return None
         module = importlib.import_module(f".{cmd_name}", __package__)
         command: click.Command = getattr(module, cmd_name)
         return command
 
-    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002, D102
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: D102
         with formatter.section("Commands"):
             formatter.write_dl(list(VERBS.items()))
 
 
-@click.command(cls=Verbs, epilog="Example: residuum observe run.csv --model generated/ur5e_dof6/model.toml --out r.csv")
+@click.command(
+    cls=Verbs, epilog="Example: residuum observe run.csv --model generated/ur5e_dof6/model.toml --out r.csv"
+)
 @click.version_option(__version__, prog_name="residuum")
 def residuum() -> None:
     """Find what a robot's own motion does not explain of its motor currents.

@@ -15,13 +15,21 @@ if TYPE_CHECKING:
     from ..identify.observation import Observation
 
 
-@click.command(epilog="Example: residuum observe run.csv --model generated/ur5e_dof6 --out residual.csv --plot residual.png")
+@click.command(
+    epilog="Example: residuum observe run.csv --model generated/ur5e_dof6 --out r.csv --plot r.png"
+)
 @click.argument("recording", type=click.Path(path_type=Path), metavar="REC")
-@click.option("--model", required=True, type=click.Path(path_type=Path),
-              help="A model.toml, or a folder that gen-model wrote.")
+@click.option(
+    "--model",
+    required=True,
+    type=click.Path(path_type=Path),
+    help="A model.toml, or a folder that gen-model wrote.",
+)
 @click.option("--out", required=True, type=click.Path(path_type=Path), help="CSV to write.")
 @click.option("--plot", type=click.Path(path_type=Path), help="Picture to write: .png, .svg or .pdf.")
-@click.option("--gain", type=click.FloatRange(min=0, min_open=True), help="Observer gain, 1/s.  [default: the model's]")
+@click.option(
+    "--gain", type=click.FloatRange(min=0, min_open=True), help="Observer gain, 1/s.  [default: the model's]"
+)
 def observe(recording: Path, model: Path, out: Path, plot: Path | None, gain: float | None) -> None:
     """Write residual and external torque along a recording.
 
@@ -93,19 +101,28 @@ def draw(path: Path, found: "Observation", name: str, module: ModuleType) -> Non
     residual_rms, external_rms = found.rms()
     same = np.array_equal(found.residual, found.external_torque)
     for i, panel in enumerate(panels):
-        for values, label, colour in ((found.residual, "residual", "#9aa5b1"), (found.external_torque, "external torque", "#0b6bcb")):
+        for values, label, colour in (
+            (found.residual, "residual", "#9aa5b1"),
+            (found.external_torque, "external torque", "#0b6bcb"),
+        ):
             if same and label == "residual":
                 continue
             broken = values[:, i].copy()
             broken[list(found.starts)] = np.nan
             panel.plot(time, broken, lw=0.9, color=colour, label=label)
         panel.axhline(0, lw=0.5, color="black")
-        text = f"joint {i + 1}: rms {residual_rms[i]:.2f} Nm" + ("" if same else f" -> {external_rms[i]:.2f} Nm")
+        text = f"joint {i + 1}: rms {residual_rms[i]:.2f} Nm" + (
+            "" if same else f" -> {external_rms[i]:.2f} Nm"
+        )
         panel.set_title(text, loc="left", fontsize=9)
         panel.set_ylabel("Nm")
         panel.grid(alpha=0.3)
     panels[0].legend(loc="upper right", fontsize=8)
     panels[-1].set_xlabel("time, s")
-    note = "no friction terms in this model: residual = external torque" if same else "grey: rigid body alone; blue: with the model's terms"
+    note = (
+        "no friction terms in this model: residual = external torque"
+        if same
+        else "grey: rigid body alone; blue: with the model's terms"
+    )
     figure.suptitle(f"{name}   ({note})", fontsize=10)
     figure.savefig(path, dpi=130)

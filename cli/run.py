@@ -20,7 +20,11 @@ def run(command: click.Command, name: str) -> None:
     except click.exceptions.Abort:
         _fail("interrupted", 130)
     except click.ClickException as error:
-        where = f" (see {error.ctx.command_path} --help)" if isinstance(error, click.UsageError) and error.ctx else ""
+        where = (
+            f" (see {error.ctx.command_path} --help)"
+            if isinstance(error, click.UsageError) and error.ctx
+            else ""
+        )
         _fail(f"{error.format_message()}{where}")
     except BrokenPipeError:
         sys.stderr.close()

@@ -14,6 +14,7 @@ from .listing import Builder, Instruction, Listing
 
 Monomial = tuple[int, ...]  # atoms in ascending order; a power is a repetition
 Terms = dict[Monomial, float]  # product -> coefficient; signs only, once constants are atoms
+Canonical = tuple[tuple[Monomial, float], ...]  # a sum up to its sign
 _FREE = ("const", "input")
 
 
@@ -40,7 +41,7 @@ class _Program:
     pairs: dict[int, tuple[int, int]] = field(default_factory=dict)
     rows: dict[int, Terms] = field(default_factory=dict)
     names: dict[object, int] = field(default_factory=dict)
-    sums: dict[object, tuple[int, float]] = field(default_factory=dict)  # canonical sum -> row, its sign
+    sums: dict[Canonical, tuple[int, float]] = field(default_factory=dict)  # canonical sum -> row, its sign
 
     def atom(self, key: object) -> tuple[int, bool]:
         """Return the atom of a value, and whether it is new."""
@@ -84,7 +85,7 @@ class _Program:
             self.sums.setdefault(key, (atom, sign))
 
 
-def _canonical(terms: Terms) -> tuple[tuple[tuple[Monomial, float], ...], float]:
+def _canonical(terms: Terms) -> tuple[Canonical, float]:
     ordered = sorted(terms.items())
     sign = -1.0 if ordered[0][1] < 0 else 1.0
     return tuple((m, sign * c) for m, c in ordered), sign
@@ -201,13 +202,13 @@ def _without(monomial: Monomial, atom: int) -> Monomial:
 
 
 def _inner(terms: Terms, atom: int) -> Terms:
-    """The cofactor of an atom in a sum."""
+    """Return the cofactor of an atom in a sum."""
     return {_without(m, atom): c for m, c in terms.items() if atom in m and len(m) > 1}
 
 
 def _best_factor(program: _Program) -> tuple[int, list[tuple[int, int]]]:
     """Find the factor (in all sums where it leaves the same cofactor) that saves most."""
-    groups: dict[object, list[tuple[int, int]]] = defaultdict(list)
+    groups: dict[Canonical, list[tuple[int, int]]] = defaultdict(list)
     for row, terms in program.rows.items():
         if len(terms) < 2:
             continue

@@ -28,15 +28,17 @@ def worst_disagreement(model: SymbolicModel, observer_text: str, states: int = 2
     for _ in range(states):
         q, qd = random.uniform(-np.pi, np.pi, n), random.uniform(-2, 2, n)
         load, hot = random.uniform(-50, 50, n), random.uniform(20, 60, n)
-        exact = _rigid_body(model, q, qd)
-        worst = max(worst, _relative(module.momentum(q, qd), exact[0]), _relative(module.beta(q, qd), exact[1]))
+        exact = _rigid_body(model, q.tolist(), qd.tolist())
+        worst = max(
+            worst, _relative(module.momentum(q, qd), exact[0]), _relative(module.beta(q, qd), exact[1])
+        )
         friction = _terms(model, q, qd, load, hot)
         worst = max(worst, _relative(module.friction(q, qd, load, hot), friction))
     return worst
 
 
 def _rigid_body(
-    model: SymbolicModel, q: NDArray[np.float64], qd: NDArray[np.float64]
+    model: SymbolicModel, q: list[float], qd: list[float]
 ) -> tuple[Sequence[mp.mpf], Sequence[mp.mpf]]:
     if model.model.variant == "full":
         arm = robot_arm(model.model)
@@ -56,10 +58,15 @@ def _terms(model: SymbolicModel, *columns: NDArray[np.float64]) -> list[mp.mpf]:
     result = []
     for joint in range(1, model.model.dof + 1):
         expression = model.friction(joint)
-        inputs = {f"{name}{joint}": column[joint - 1] for name, column in zip(("q", "qd", "load", "temperature"), columns, strict=True)}
+        inputs = {
+            f"{name}{joint}": column[joint - 1]
+            for name, column in zip(("q", "qd", "load", "temperature"), columns, strict=True)
+        }
         values = {k: model.values.get(k, inputs.get(k.name)) for k in expression.free_symbols}
         numbers = {k: mp.mpf(float(v)) for k, v in values.items() if v is not None}
-        result.append(lambdify(list(numbers), expression, model.dynamics.chain.__class__())(*numbers.values()))
+        result.append(
+            lambdify(list(numbers), expression, model.dynamics.chain.__class__())(*numbers.values())
+        )
     return result
 
 

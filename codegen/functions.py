@@ -83,13 +83,19 @@ def symbolic_model(model: Model) -> SymbolicModel:
 def joint_term(data: TermData, model: Model) -> JointTerm:
     """Look a term up in the catalogue and give every parameter a number."""
     if data.name not in CATALOGUE:
-        raise InputError(f"{model.name}: term {data.name}: no such term; {nearest(data.name, list(CATALOGUE))}")
+        raise InputError(
+            f"{model.name}: term {data.name}: no such term; {nearest(data.name, list(CATALOGUE))}"
+        )
     term = CATALOGUE[data.name]
     if unknown := sorted(set(data.parameters) - set(term.parameters)):
-        raise InputError(f"{model.name}: term {data.name}: no parameter {unknown[0]}; known: {', '.join(term.parameters)}")
+        raise InputError(
+            f"{model.name}: term {data.name}: no parameter {unknown[0]}; known: {', '.join(term.parameters)}"
+        )
     values = {n: p.default for n, p in term.parameters.items() if p.default is not None} | data.parameters
     if missing := sorted(set(term.parameters) - set(values)):
-        raise InputError(f"{model.name}: term {data.name} on joint {data.joint}: parameter {missing[0]} is missing")
+        raise InputError(
+            f"{model.name}: term {data.name} on joint {data.joint}: parameter {missing[0]} is missing"
+        )
     expression, named = term.on_joint(data.joint)
     return JointTerm(data, expression, named, values)
 
@@ -98,7 +104,9 @@ def _known_names(model: Model, names: Iterable[str]) -> None:
     known = list(names)
     for name in model.base:
         if name not in known:
-            raise InputError(f"{model.name}: base parameter {name}: this robot has none of that name; {nearest(name, known)}")
+            raise InputError(
+                f"{model.name}: base parameter {name}: not one of this robot; {nearest(name, known)}"
+            )
 
 
 @dataclass(frozen=True)
@@ -122,7 +130,9 @@ def _graph(model: SymbolicModel) -> _Graph:
     environment = numbers(model.values)
     environment |= {s: q[i] for i, s in enumerate(d.q)} | {s: qd[i] for i, s in enumerate(d.qd)}
     environment = convert_chain(d.chain, environment)
-    momentum, beta = (ca.vertcat(*(convert(sp.sympify(x), environment) for x in e)) for e in (d.momentum, d.beta))
+    momentum, beta = (
+        ca.vertcat(*(convert(sp.sympify(x), environment) for x in e)) for e in (d.momentum, d.beta)
+    )
     at_rest = ca.Function("at_rest", [q, qd], [-beta])(q, ca.DM.zeros(len(d.q)))
     if d.bias is None:
         bias = ca.jtimes(momentum, q, qd) - beta

@@ -40,7 +40,7 @@ class Body:
 
 
 def _urscript_number(value: float) -> str:
-    """Always a decimal point, and an exponent only behind digits (script manual, ch. 3)."""
+    """Write a decimal point always, and an exponent only behind digits (script manual, ch. 3)."""
     text = repr(value)
     mantissa, e, exponent = text.partition("e")
     return (mantissa if "." in mantissa else f"{mantissa}.0") + e + exponent
@@ -49,7 +49,14 @@ def _urscript_number(value: float) -> str:
 C = Language(
     "C99",
     repr,
-    {"sin": "sin({})", "cos": "cos({})", "exp": "exp({})", "sqrt": "sqrt({})", "abs": "fabs({})", "pow": "pow({}, {})"},
+    {
+        "sin": "sin({})",
+        "cos": "cos({})",
+        "exp": "exp({})",
+        "sqrt": "sqrt({})",
+        "abs": "fabs({})",
+        "pow": "pow({}, {})",
+    },
 )
 NUMPY = Language(
     "NumPy",
@@ -86,7 +93,8 @@ def body(listing: Listing, language: Language) -> Body:
     uses = Counter(a for x in listing.instructions if x.op not in ("const", "input") for a in x.args)
     uses.update(i for _, indices in listing.outputs.values() for i in indices)
     names = list(listing.inputs)
-    inputs, statements = [], []
+    inputs: list[tuple[str, str, int]] = []
+    statements: list[Statement] = []
     texts: list[tuple[str, int]] = []
     for index, x in enumerate(listing.instructions):
         if x.op == "input":
@@ -99,9 +107,7 @@ def body(listing: Listing, language: Language) -> Body:
             statements.append(Statement(f"t{len(statements) + 1}", text))
             text, strength = statements[-1].target, _ATOM
         texts.append((text, strength))
-    outputs = {
-        label: tuple(texts[i][0] for i in indices) for label, (_, indices) in listing.outputs.items()
-    }
+    outputs = {label: tuple(texts[i][0] for i in indices) for label, (_, indices) in listing.outputs.items()}
     return Body(tuple(sorted(inputs, key=lambda x: (names.index(x[1]), x[2]))), tuple(statements), outputs)
 
 

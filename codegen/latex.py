@@ -62,7 +62,9 @@ def _compact(expression: sp.Expr, model: Dynamics) -> sp.Expr:
     compact = expression.xreplace(short)
     if sp.fraction(sp.together(compact))[1].free_symbols:
         return sp.factor_terms(compact)
-    return sp.collect(sp.expand(compact), [a * b for i, a in enumerate(model.qd) for b in model.qd[i:]] + list(model.qd))
+    return sp.collect(
+        sp.expand(compact), [a * b for i, a in enumerate(model.qd) for b in model.qd[i:]] + list(model.qd)
+    )
 
 
 _NAMES = (

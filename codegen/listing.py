@@ -68,7 +68,11 @@ class Listing:
         wanted = _needed(self, [i for label in outputs for i in self.outputs[label][1]])
         for index, x in enumerate(self.instructions):
             if index in wanted:
-                args = (position[x.args[0]], x.args[1]) if x.op == "input" else tuple(number.get(a, a) for a in x.args)
+                args = (
+                    (position[x.args[0]], x.args[1])
+                    if x.op == "input"
+                    else tuple(number.get(a, a) for a in x.args)
+                )
                 number[index] = builder.add(Instruction(x.op, args, x.value))
         shaped = {k: (self.outputs[k][0], tuple(number[i] for i in self.outputs[k][1])) for k in outputs}
         return builder.listing(name, {label: self.inputs[label] for label in inputs}, shaped)
@@ -91,12 +95,17 @@ def from_casadi(name: str, inputs: Mapping[str, ca.SX], outputs: Mapping[str, ca
 
     inputs: name -> column of symbols. A constant 0 output stays a constant.
     """
-    function = ca.Function(name, list(inputs.values()), [ca.vec(x.T) for x in outputs.values()])
+    dense = [ca.densify(ca.vec(x.T)) for x in outputs.values()]
+    function = ca.Function(name, list(inputs.values()), dense)
     builder = Builder()
     register: dict[int, int] = {}
     found: dict[tuple[int, int], int] = {}
     for k in range(function.n_instructions()):
-        op, args, out = function.instruction_id(k), function.instruction_input(k), function.instruction_output(k)
+        op, args, out = (
+            function.instruction_id(k),
+            function.instruction_input(k),
+            function.instruction_output(k),
+        )
         if op == ca.OP_OUTPUT:
             found[(out[0], out[1])] = register[args[0]]
         elif op == ca.OP_INPUT:
@@ -166,7 +175,9 @@ class Builder:
                 order.append(index)
             return number[index]
 
-        numbered = {label: (shape, tuple(visit(i) for i in indices)) for label, (shape, indices) in outputs.items()}
+        numbered = {
+            label: (shape, tuple(visit(i) for i in indices)) for label, (shape, indices) in outputs.items()
+        }
         final = []
         for index in order:
             x = self._instructions[index]

@@ -12,7 +12,9 @@ __all__ = ["Joint", "Robot", "load_robot", "robot_names"]
 
 def robot_names() -> list[str]:
     """Return the names of the built-in robots."""
-    return sorted(f.name.removesuffix(".toml") for f in resources.files(__name__).iterdir() if f.name.endswith(".toml"))
+    return sorted(
+        f.name.removesuffix(".toml") for f in resources.files(__name__).iterdir() if f.name.endswith(".toml")
+    )
 
 
 def load_robot(name_or_file: str) -> tuple[Robot, str]:

@@ -83,7 +83,9 @@ class Model(Frozen):
     def _sizes_agree(self) -> "Model":
         for i, term in enumerate(self.term):
             if term.joint > self.dof:
-                raise ValueError(f"term[{i}] {term.name} sits on joint {term.joint}, the model has {self.dof}")
+                raise ValueError(
+                    f"term[{i}] {term.name} sits on joint {term.joint}, the model has {self.dof}"
+                )
         if self.thresholds and len(self.thresholds.static) != self.dof:
             raise ValueError(f"thresholds: static needs {self.dof} values, one a joint")
         if self.thresholds and self.thresholds.per_speed and len(self.thresholds.per_speed) != self.dof:

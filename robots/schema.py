@@ -1,5 +1,7 @@
 """What a robot file holds. Everything is data with a source; nothing is computed here."""
 
+import math
+from decimal import Decimal
 from fractions import Fraction
 from typing import Annotated, Any
 
@@ -22,7 +24,9 @@ def _angle(value: Any) -> Any:
         return value
     text = value.replace(" ", "").replace("*", "")
     try:
-        turns = Fraction(text.replace("pi", "1", 1) if text.strip("-+").startswith("pi") else text.replace("pi", "", 1))
+        turns = Fraction(
+            text.replace("pi", "1", 1) if text.strip("-+").startswith("pi") else text.replace("pi", "", 1)
+        )
     except (ValueError, ZeroDivisionError):
         raise ValueError('give rad as a number, or a multiple of pi as text such as "pi/2"') from None
     if "pi" not in text and turns != 0:
@@ -71,12 +75,17 @@ class Joint(Frozen):
     @property
     def drive_gain(self) -> float:
         """Joint torque per motor current, Nm/A."""
-        return self.gear * self.torque_constant
+        return _decimal_product(self.gear, self.torque_constant)
 
     @property
     def reflected_inertia(self) -> float:
         """Rotor inertia seen at the joint, kg m^2."""
-        return self.gear**2 * self.rotor_inertia
+        return _decimal_product(self.gear, self.gear, self.rotor_inertia)
+
+
+def _decimal_product(*numbers: float) -> float:
+    """Multiply the decimals that were written: 101 * 0.1005 is 10.1505, not 10.150500000000001."""
+    return float(math.prod(Decimal(repr(x)) for x in numbers))
 
 
 class Robot(Frozen):
@@ -93,7 +102,15 @@ class Robot(Frozen):
 
     @model_validator(mode="after")
     def _sources_are_named(self) -> "Robot":
-        needed = {"kinematics", "mass", "centre_of_mass", "inertia", "gear", "torque_constant", "rotor_inertia"}
+        needed = {
+            "kinematics",
+            "mass",
+            "centre_of_mass",
+            "inertia",
+            "gear",
+            "torque_constant",
+            "rotor_inertia",
+        }
         if missing := sorted(needed - set(self.source)):
             raise ValueError(f"[source] says nothing of {', '.join(missing)}")
         return self

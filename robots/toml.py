@@ -58,7 +58,7 @@ def _first_problem(error: ValidationError, text: str, file: str) -> str:
 
 def _name(location: tuple[int | str, ...]) -> str:
     """Joints, and the links that they move, are numbered from 1."""
-    words = []
+    words: list[str] = []
     for part in location:
         if isinstance(part, int) and words and words[-1] == "joint":
             words[-1] = f"joint {part + 1} (link {part + 1})"

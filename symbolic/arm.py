@@ -61,7 +61,7 @@ class Arm:
         return tuple(sp.Symbol(f"qd{i + 1}") for i in range(self.dof))
 
     def parallel_groups(self) -> list[list[int]]:
-        """Runs of joints (0-based) whose axes are parallel, in order."""
+        """Return runs of joints (0-based) whose axes are parallel, in order."""
         groups = [[0]]
         for i in range(1, self.dof):
             if self.links[i - 1].is_parallel:

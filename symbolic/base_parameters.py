@@ -33,7 +33,9 @@ def inherited_part() -> tuple[tuple[sp.Expr, ...], ...]:
     motion = Motion(spin + sp.Matrix([0, 0, rate]), velocity, gravity, position)
     turn = sp.Matrix([[c, -s, 0], [s, c, 0], [0, 0, 1]])
     moment = turn * body.first_moment
-    lagrangian = kinetic_energy(body, moment, turn.T * motion.spin, motion) - potential_energy(body, moment, motion)
+    lagrangian = kinetic_energy(body, moment, turn.T * motion.spin, motion) - potential_energy(
+        body, moment, motion
+    )
     by_angle = lagrangian.diff(s) * c - lagrangian.diff(c) * s
     unknowns = [c, s, rate, *(x for vector in before for x in vector)]
     equations = []
@@ -53,7 +55,9 @@ def lump(arm: Arm, bodies: Sequence[Inertia]) -> list[Inertia]:
         parameters = sp.Matrix(lumped[i].parameters)
         passed = sp.zeros(10, 1)
         for vector in inherited_part():
-            pivot = next(PARAMETER_NAMES.index(x) for x in _ELIMINATION_ORDER if vector[PARAMETER_NAMES.index(x)])
+            pivot = next(
+                PARAMETER_NAMES.index(x) for x in _ELIMINATION_ORDER if vector[PARAMETER_NAMES.index(x)]
+            )
             passed += sp.Matrix(vector) * (parameters[pivot] / vector[pivot])
         lumped[i] = Inertia.from_parameters(parameters - passed)
         if i:
@@ -65,9 +69,7 @@ def lump(arm: Arm, bodies: Sequence[Inertia]) -> list[Inertia]:
 def link_symbols(arm: Arm) -> list[Inertia]:
     """Return the links' own parameters as symbols (m2, mx2, .., jxx2, ..), in their turned frames."""
     names = ("m", "mx", "my", "mz", "jxx", "jyy", "jzz", "jxy", "jxz", "jyz")
-    return [
-        Inertia.from_parameters([sp.Symbol(f"{name}{i + 1}") for name in names]) for i in range(arm.dof)
-    ]
+    return [Inertia.from_parameters([sp.Symbol(f"{name}{i + 1}") for name in names]) for i in range(arm.dof)]
 
 
 def rotor_symbols(arm: Arm) -> list[sp.Symbol]:
@@ -83,7 +85,9 @@ def base_parameters(arm: Arm) -> dict[sp.Symbol, sp.Expr]:
     """
     meaning: dict[sp.Symbol, sp.Expr] = {}
     for i, body in enumerate(lump(arm, link_symbols(arm)), start=1):
-        meaning |= {sp.Symbol(f"{n}{i}"): p for n, p in zip(PARAMETER_NAMES, body.parameters, strict=True) if p != 0}
+        meaning |= {
+            sp.Symbol(f"{n}{i}"): p for n, p in zip(PARAMETER_NAMES, body.parameters, strict=True) if p != 0
+        }
     meaning |= {sp.Symbol(f"IA{i}"): r for i, r in enumerate(rotor_symbols(arm), start=1)}
     model = base_energies(arm, meaning)
     seen = _reachable(model)

@@ -110,10 +110,14 @@ def _group(
         return motion, terms
     turned = (
         _into_turned(chain, letter, name, c, s, vector)
-        for letter, vector in zip("wvgr", (motion.spin, motion.velocity, motion.gravity, motion.position), strict=True)
+        for letter, vector in zip(
+            "wvgr", (motion.spin, motion.velocity, motion.gravity, motion.position), strict=True
+        )
     )
     twist = arm.links[group[-1]].twist.T
-    return Motion(*(_define(chain, f"{letter}t", name, twist * x) for letter, x in zip("wvgr", turned, strict=True))), terms
+    return Motion(
+        *(_define(chain, f"{letter}t", name, twist * x) for letter, x in zip("wvgr", turned, strict=True))
+    ), terms
 
 
 def _along(chain: Chain, name: str, motion: Motion, offset: sp.Matrix) -> Motion:
@@ -132,7 +136,9 @@ def _out_of_turned(chain: Chain, letter: str, name: str, c: sp.Expr, s: sp.Expr,
 
 
 def _define(chain: Chain, letter: str, name: str, vector: sp.Matrix) -> sp.Matrix:
-    return sp.Matrix([chain.define(f"{letter}{axis}{name}", e) for axis, e in zip("xyz", vector, strict=True)])
+    return sp.Matrix(
+        [chain.define(f"{letter}{axis}{name}", e) for axis, e in zip("xyz", vector, strict=True)]
+    )
 
 
 def _dot(a: sp.Matrix, b: sp.Matrix) -> sp.Expr:

@@ -7,7 +7,12 @@ import sympy as sp
 
 #: Khalil and Dombre's names, in the order of `Inertia.parameters`.
 PARAMETER_NAMES = ("M", "MX", "MY", "MZ", "XX", "YY", "ZZ", "XY", "XZ", "YZ")
-PARAMETER_UNITS = dict.fromkeys(PARAMETER_NAMES, "kg m^2") | {"M": "kg", "MX": "kg m", "MY": "kg m", "MZ": "kg m"}
+PARAMETER_UNITS = dict.fromkeys(PARAMETER_NAMES, "kg m^2") | {
+    "M": "kg",
+    "MX": "kg m",
+    "MY": "kg m",
+    "MZ": "kg m",
+}
 
 
 @dataclass(frozen=True)

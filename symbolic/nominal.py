@@ -61,7 +61,9 @@ def nominal_model(
     Raises InputError when dof or the number of angles does not fit the robot.
     """
     if not 1 <= dof <= len(robot.joint):
-        raise InputError(f"--dof {dof}: {robot.name} has {len(robot.joint)} joints; give 1 to {len(robot.joint)}")
+        raise InputError(
+            f"--dof {dof}: {robot.name} has {len(robot.joint)} joints; give 1 to {len(robot.joint)}"
+        )
     left_out = len(robot.joint) - dof
     angles = tuple(locked_angles) or (0.0,) * left_out
     if len(angles) != left_out:
@@ -111,7 +113,8 @@ def _thesis_values(robot: Robot, dof: int) -> dict[str, Value]:
     values = {
         "m1": one.mass, "m2": two.mass, "m3": three.mass,
         "d1": one.centre_of_mass[2], "d2": two.centre_of_mass[2], "d3": three.centre_of_mass[2],
-        "L2": abs(two.a), "l2": abs(two.a + two.centre_of_mass[0]), "l3": abs(three.a + three.centre_of_mass[0]),
+        "L2": abs(two.a),
+        "l2": abs(two.a + two.centre_of_mass[0]), "l3": abs(three.a + three.centre_of_mass[0]),
         "I1": one.inertia[1], "I2": two.inertia[2], "I3": three.inertia[2],
         "Im": two.rotor_inertia, "rho": two.gear, "g": float(np.linalg.norm(robot.gravity)),
     }  # fmt: skip

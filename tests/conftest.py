@@ -1,0 +1,31 @@
+"""What all tests share: models, generated trees, and the real recordings when they are there."""
+
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from residuum.codegen.generate import generate
+from residuum.robots import load_robot
+from residuum.symbolic.nominal import nominal_model
+
+RECORDINGS = Path(__file__).resolve().parents[2] / "shared" / "recordings"
+
+
+@cache
+def _generated(robot: str, dof: int, variant: str = "full"):
+    return generate(nominal_model(*load_robot(robot), dof, variant=variant))
+
+
+@pytest.fixture(scope="session")
+def generated():
+    """(robot, dof, variant) -> Generated, each made once a session."""
+    return _generated
+
+
+@pytest.fixture(scope="session")
+def real_recordings() -> Path:
+    """Folder of the real recordings; without it the test is skipped."""
+    if not RECORDINGS.is_dir():
+        pytest.skip("the real recordings are not beside this checkout")
+    return RECORDINGS
