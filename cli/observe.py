@@ -40,6 +40,7 @@ def observe(recording: Path, model: Path, out: Path, plot: Path | None, gain: fl
     from ..identify.observation import observe as run_observer
     from ..recordings import read
     from ..recordings.audit import clean
+    from ..recordings.report import describe
 
     if plot and plot.suffix.lower() not in (".png", ".svg", ".pdf"):
         raise InputError(f"--plot {plot}: give a name that ends in .png, .svg or .pdf")
@@ -57,7 +58,7 @@ def observe(recording: Path, model: Path, out: Path, plot: Path | None, gain: fl
             write_file(plot, lambda path: draw(path, found, good.name, module), "--plot")
     for finding in report.findings:
         if finding.severity == "dropped":
-            click.echo(f"{good.name}: {finding.text}")
+            click.echo(f"{good.name}: {describe(finding)}")
     click.echo(_table(found, module.DOF))
 
 

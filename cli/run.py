@@ -47,7 +47,7 @@ class Stages:
 
     def begin(self, stage: str) -> None:
         """Name the stage that begins; the one before is done."""
-        self._progress.update(self._task, description=stage, advance=int(self._begun))
+        self._progress.update(self._task, description=stage, advance=int(self._begun), refresh=True)
         self._begun = True
 
 
