@@ -9,7 +9,15 @@ from pathlib import Path
 import pytest
 from residuum.robots import load_robot
 
-FILES = {"__init__.py", "observer.py", "observer.c", "observer.h", "collision_guard.script", "model.md", "model.toml"}
+FILES = {
+    "__init__.py",
+    "observer.py",
+    "observer.c",
+    "observer.h",
+    "collision_guard.script",
+    "model.md",
+    "model.toml",
+}
 UR5E = Path(__file__).resolve().parents[2] / "robots" / "ur5e.toml"
 
 
@@ -88,7 +96,11 @@ def edited(tmp_path: Path, old: str, new: str) -> Path:
     ("old", "new", "words"),
     [
         ("mass = 8.058", "mass = 0.0", ["line 34", "link 2", "mass"]),
-        ("inertia = [0.004095, 0.031209368,", "inertia = [0.004, 0.05,", ["line 49", "link 3", "triangle inequality"]),
+        (
+            "inertia = [0.004095, 0.031209368,",
+            "inertia = [0.004, 0.05,",
+            ["line 49", "link 3", "triangle inequality"],
+        ),
         ("gear = 101.0", "geer = 101.0", ["joint 1", "gear", "missing"]),
         ("gear = 101.0", "gear = 101.0\nteeth = 7", ["line 25", "teeth", "not a known key"]),
         ("gear = 101.0", "gear = ", ["line 24", "not valid TOML"]),
@@ -171,8 +183,15 @@ def test_every_built_in_robot_names_a_source_for_every_number() -> None:
 def test_runs_on_a_terminal_with_a_progress_bar(tmp_path) -> None:
     if shutil.which("script") is None:
         pytest.skip("no program `script` to make a terminal with")
-    command = f"{sys.executable} -c 'from residuum.cli.gen_model import main; main()' --dof 3 --out {tmp_path}"
-    done = subprocess.run(["script", "-qec", command, "/dev/null"], capture_output=True, text=True, env=os.environ | {"TERM": "xterm", "COLUMNS": "100"})
+    command = (
+        f"{sys.executable} -c 'from residuum.cli.gen_model import main; main()' --dof 3 --out {tmp_path}"
+    )
+    done = subprocess.run(
+        ["script", "-qec", command, "/dev/null"],
+        capture_output=True,
+        text=True,
+        env=os.environ | {"TERM": "xterm", "COLUMNS": "100"},
+    )
     assert done.returncode == 0
     for stage in ("deriving", "reducing", "checking against SymPy"):
         assert stage in done.stdout

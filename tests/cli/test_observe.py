@@ -90,7 +90,9 @@ def test_real_recording_and_the_same_with_a_broken_row(broken, real_recordings, 
         lines[499] = lines[499].replace(",", ",x", 3)
     recording = tmp_path / "run.csv"
     recording.write_text("".join(lines))
-    done = residuum("observe", recording, "--model", model_file, "--out", tmp_path / "r.csv", "--plot", tmp_path / "r.png")
+    done = residuum(
+        "observe", recording, "--model", model_file, "--out", tmp_path / "r.csv", "--plot", tmp_path / "r.png"
+    )
     assert done.returncode == 0, done.stderr
     table = np.genfromtxt(tmp_path / "r.csv", delimiter=",", names=True)
     assert len(table) == 2036 - broken
@@ -124,7 +126,13 @@ def test_bad_input_gets_one_line_and_leaves_nothing(arguments, words, module, mo
     table = np.column_stack([time, q, qd, current])
     np.savetxt(tmp_path / "run.csv", table, delimiter=",", header=",".join(names), comments="")
     np.savetxt(tmp_path / "short.csv", table[:1], delimiter=",", header=",".join(names), comments="")
-    places = {"run": tmp_path / "run.csv", "short": tmp_path / "short.csv", "out": tmp_path / "out.csv", "model": model_file, "dir": tmp_path}
+    places = {
+        "run": tmp_path / "run.csv",
+        "short": tmp_path / "short.csv",
+        "out": tmp_path / "out.csv",
+        "model": model_file,
+        "dir": tmp_path,
+    }
     done = residuum("observe", *(a.format(**places) for a in arguments))
     assert done.returncode == 2
     assert len(done.stderr.strip().splitlines()) == 1
