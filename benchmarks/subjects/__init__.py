@@ -1,0 +1,1 @@
+"""What is compared: each module builds the implementations of one project for one robot."""
