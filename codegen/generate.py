@@ -8,20 +8,14 @@ import tomli_w
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from ..robots.model import Model
-from ..symbolic.terms import TEMPERATURE
 from .functions import SymbolicModel, listings, symbolic_model
+from .guard import guard_scripts
+from .inplace import in_place
 from .languages import NUMPY, URSCRIPT, C, body
 from .listing import Listing
+from .options import Options
 from .page import UNFITTED_THRESHOLD, page_context
 from .printed import CFunction, NumpyFunction
-
-
-@dataclass(frozen=True)
-class Options:
-    """What gen-model lets one choose: current_source "modbus" or "rtde"; reaction on a collision."""
-
-    current_source: str = "modbus"
-    reaction: str = "freedrive"
 
 
 @dataclass(frozen=True)
@@ -77,31 +71,32 @@ def render(
     model = symbolic.model
     environment = _environment()
     shared = _shared_context(symbolic)
-    guard = environment.get_template("model/collision_guard.script.jinja").render(
-        **shared,
-        core=NumpyFunction("core", body(found["core"], URSCRIPT), found["core"]),
-        modbus=options.current_source == "modbus",
-        reaction=options.reaction,
-        six_zeros=["0.0"] * 6,
-        zeros=["0.0"] * model.dof,
-        temperature_used=symbolic.uses(TEMPERATURE),
-    )
+    scripts = guard_scripts(environment, shared, symbolic, found, options)
     in_numpy = {n: NumpyFunction(n, body(x, NUMPY), x) for n, x in found.items() if n != "momentum_and_beta"}
     in_c = [CFunction(n, body(x, C), x, model.name.upper()) for n, x in found.items()]
     files = {
         "__init__.py": f'"""{model.title}, {model.dof} joints: written by gen-model; do not edit."""\n',
         "observer.py": environment.get_template("model/observer.py.jinja").render(
-            **shared, functions=in_numpy.values(), core=in_numpy["core"], term_notes=_term_notes(symbolic)
+            **shared,
+            functions=in_numpy.values(),
+            core=in_numpy["core"],
+            block=in_place(found["core"]),
+            term_notes=_term_notes(symbolic),
         ),
         "observer.h": environment.get_template("model/observer.h.jinja").render(**shared, functions=in_c),
         "observer.c": environment.get_template("model/observer.c.jinja").render(**shared, functions=in_c),
-        "collision_guard.script": guard,
+        **scripts,
         "model.md": environment.get_template("model/model.md.jinja").render(
-            **shared, **page_context(symbolic, found, guard, further_counts)
+            **shared, **page_context(symbolic, found, scripts["collision_guard.script"], further_counts)
         ),
         "model.toml": model_toml(model),
     }
     return Generated(files, found, symbolic)
+
+
+def urscripts(symbolic: SymbolicModel, found: Mapping[str, Listing], options: Options) -> dict[str, str]:
+    """Print the URScript programs alone: file name -> text."""
+    return guard_scripts(_environment(), _shared_context(symbolic), symbolic, found, options)
 
 
 def _environment() -> Environment:
