@@ -99,16 +99,17 @@ def checked(all_subjects: Sequence[Subject], states: States) -> dict[str, float]
 
 def measure(joints: int, all_subjects: Sequence[Subject], count: int, repetitions: int) -> list[Figure]:
     """Time implementations turn by turn."""
-    states, samples = States.random(count, joints), States.random(SAMPLES, joints)
+    states = States.random(count, joints)
+    given = {"numpy": States.random(SAMPLES, joints), "motion": States.motion(SAMPLES, joints)}
     differences = checked(all_subjects, states)
     times = {s.name: np.empty(repetitions) for s in all_subjects}
     for repetition in range(-1, repetitions):  # the first only warms up
         for s in all_subjects:
-            taken = s.time(samples if s.kind == "numpy" else states)
+            taken = s.time(given.get(s.kind, states))
             if repetition >= 0:
                 times[s.name][repetition] = taken
     own = {"native": np.median(times["residuum C, momentum and beta"])}
-    other = np.median(times["residuum NumPy, core"])
+    other = np.median(times["residuum NumPy, core, random states"])
     return [
         Figure(
             joints, s.name, s.kind, float(times[s.name].min()), float(np.median(times[s.name])),

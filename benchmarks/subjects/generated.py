@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from types import ModuleType
+from types import CodeType, ModuleType
 
 import numpy as np
 
@@ -80,7 +80,8 @@ def numpy(generated: Generated) -> list[Subject]:
         return values[:, :dof], values[:, dof : 2 * dof]
 
     return [
-        Subject("residuum NumPy, core", "numpy", together, _timed(core)),
+        Subject("residuum NumPy, core, random states", "numpy", together, _timed(core)),
+        Subject("residuum NumPy, core, along a motion", "motion", together, _timed(core)),
         Subject("residuum NumPy, momentum and beta", "numpy", separate, _timed(separate)),
     ]
 
@@ -89,11 +90,15 @@ def _core(module: ModuleType) -> Callable[[States], np.ndarray]:
     """Return what `Observer.run` evaluates: one pass that gives momentum, beta and friction."""
     code = module._core.__code__
     used = []
-    for name in code.co_varnames[: code.co_argcount]:
+    for name in code.co_varnames[: code.co_argcount - 1]:  # the last is the work arrays
         letters, number = re.fullmatch(r"([a-z]+)(\d)", name).groups()
         used.append((("q", "qd", "temperature").index(letters), int(number) - 1))
-    hot = module.REFERENCE_TEMPERATURE
-    return lambda s: module._apply(module._core, used, 3 * module.DOF, s.q, s.qd, hot)
+    hot, work = module.REFERENCE_TEMPERATURE, _work_arrays(code)
+    return lambda s: module._apply(module._core, used, 3 * module.DOF, s.q, s.qd, hot, work=work)
+
+
+def _work_arrays(code: CodeType) -> int:
+    return sum(re.fullmatch(r"b\d+", name) is not None for name in code.co_varnames)
 
 
 def _timed(function: Callable[[States], object]) -> Callable[[States], float]:

@@ -26,13 +26,21 @@ class States(NamedTuple):
         rng = np.random.default_rng(seed)
         return cls(rng.uniform(-np.pi, np.pi, (count, dof)), rng.uniform(-2, 2, (count, dof)))
 
+    @classmethod
+    def motion(cls, count: int, dof: int) -> "States":
+        """Return what a recording holds: every joint swings by 1.5 rad at 0.1 to 0.35 Hz, at 500 Hz."""
+        rate = 2 * np.pi * (0.1 + 0.05 * np.arange(dof))
+        phase = rate * 0.002 * np.arange(count)[:, None]
+        return cls(1.5 * np.sin(phase), 1.5 * rate * np.cos(phase))
+
 
 @dataclass(frozen=True)
 class Subject:
     """One implementation.
 
     evaluate: states -> (p, beta), each (K, N). time: states -> ns of processor time per state.
-    kind: "native" code runs state by state; "numpy" and "python" are called from Python.
+    kind: "native" code runs state by state; "numpy", "motion" (NumPy along a motion) and "python" are
+    called from Python.
     operations: of the generated code, where it is straight-line code. whole: False for a part of the work,
     timed to compare with but not checked.
     """
