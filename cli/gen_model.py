@@ -2,12 +2,14 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import click
 import numpy as np
 
 from ..errors import InputError
 from .files import write_tree
+from .guard_options import guard_options, read_guard_options
 from .run import run, stages
 
 
@@ -35,20 +37,6 @@ def _numbers(text: str, option: str, count: int | None = None) -> tuple[float, .
     "--out", default="generated", show_default=True, type=click.Path(path_type=Path), help="Parent folder."
 )
 @click.option(
-    "--current-source",
-    type=click.Choice(["modbus", "rtde"]),
-    default="modbus",
-    show_default=True,
-    help="Where the URScript reads motor currents.",
-)
-@click.option(
-    "--reaction",
-    type=click.Choice(["hold", "freedrive", "retract"]),
-    default="freedrive",
-    show_default=True,
-    help="What the URScript does after a collision.",
-)
-@click.option(
     "--variant",
     type=click.Choice(["full", "thesis"]),
     default="full",
@@ -62,32 +50,34 @@ def _numbers(text: str, option: str, count: int | None = None) -> tuple[float, .
     "--gravity", metavar="X,Y,Z", help="Free fall in the base frame, m/s^2.  [default: the robot's]"
 )
 @click.option("--gain", type=float, help="Observer gain, 1/s.  [default: 25]")
+@guard_options
 def gen_model(
     dof: int | None,
     robot: str,
     model_file: Path | None,
     out: Path,
-    current_source: str,
-    reaction: str,
     variant: str,
     locked_angles: str | None,
     gravity: str | None,
     gain: float | None,
+    **guard: Any,
 ) -> None:
     """Derive a robot's equations of motion and generate its residual observer.
 
     Writes OUT/ROBOT_dofN/ with observer.py (NumPy), observer.c and .h (C99), collision_guard.script
-    (URScript), model.md (the equations) and model.toml (the numbers).
+    (URScript), probe.script and snapshot.script (what to check before its use), model.md (the equations)
+    and model.toml (the numbers).
     """
     # SymPy and CasADi take half a second to import; --help need not wait for them.
     from ..codegen.check import TOLERANCE, worst_disagreement
     from ..codegen.functions import listings, operation_count, symbolic_model
-    from ..codegen.generate import Options, render
+    from ..codegen.generate import render
     from ..robots import load_robot
     from ..robots.model import Model
     from ..robots.toml import read
     from ..symbolic.nominal import nominal_model
 
+    options = read_guard_options(**guard)
     counts: list[tuple[str, int]] = []
     with stages(5) as bar:
         bar.begin("deriving")
@@ -117,7 +107,7 @@ def gen_model(
         bar.begin("reducing")
         found = listings(symbolic)
         bar.begin("printing")
-        generated = render(symbolic, found, Options(current_source, reaction), counts)
+        generated = render(symbolic, found, options, counts)
         bar.begin("checking against SymPy")
         worst = worst_disagreement(symbolic, generated.files["observer.py"])
         if worst > TOLERANCE:

@@ -38,6 +38,7 @@ def observe(recording: Path, model: Path, out: Path, plot: Path | None, gain: fl
     said.
     """
     from ..identify.observation import observe as run_observer
+    from ..identify.observation import wrist_note
     from ..recordings import read
     from ..recordings.audit import clean
     from ..recordings.report import describe
@@ -59,6 +60,8 @@ def observe(recording: Path, model: Path, out: Path, plot: Path | None, gain: fl
     for finding in report.findings:
         if finding.severity == "dropped":
             click.echo(f"{good.name}: {describe(finding)}")
+    if note := wrist_note(good, module):
+        click.echo(note)
     click.echo(_table(found, module.DOF))
 
 

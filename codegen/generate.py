@@ -125,6 +125,7 @@ def _shared_context(symbolic: SymbolicModel) -> dict[str, object]:
         "upper": model.name.upper(),
         "hash": model_hash(model),
         "dof": model.dof,
+        "locked_angles": list(model.locked_angles),
         "thesis": model.variant == "thesis",
         "gain": model.observer_gain,
         "gains": [j.drive_gain for j in model.joint],

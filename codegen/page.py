@@ -9,7 +9,7 @@ from ..symbolic.base_parameters import base_parameters
 from ..symbolic.nominal import robot_arm
 from ..symbolic.terms import CATALOGUE
 from .functions import JointTerm, SymbolicModel, operation_count
-from .languages import URSCRIPT, body
+from .guard import guard_size
 from .latex import equations, latex, symbol_latex, term_latex
 from .listing import Listing
 
@@ -35,9 +35,7 @@ def page_context(
         "parameters": _parameter_rows(model),
         "sources": list(model.source.items()),
         "counts": [*_counts(symbolic, found), *further_counts],
-        "script_bytes": len(guard.encode()),
-        "script_assignments": len(body(found["core"], URSCRIPT).statements)
-        + len(body(found["core"], URSCRIPT).inputs),
+        "script": guard_size(guard),
     }
 
 

@@ -13,6 +13,8 @@ Array = NDArray[np.float64]
 
 #: With gain * dt above this the recursion no longer resembles a low-pass.
 _LARGEST_STEP = 0.5
+#: A joint this far from where the model has it (rad) is worth a word.
+_RIGID = 0.05
 #: Time constants after a start until the residual is taken as settled.
 _SETTLING = 5.0
 
@@ -40,6 +42,22 @@ class Observation:
         mean_square = (np.mean(x[keep] ** 2, axis=0) for x in (self.residual, self.external_torque))
         first, second = (np.sqrt(x) for x in mean_square)
         return first, second
+
+
+def wrist_note(recording: Recording, observer: ModuleType) -> str:
+    """Say where the joints that a reduced model takes as rigid are not where it has them; else nothing."""
+    n = observer.DOF
+    locked = observer.LOCKED_ANGLES[: recording.joints - n]
+    if not len(locked):
+        return ""
+    away = np.abs(recording.q[:, n : n + len(locked)] - locked).max(axis=0)
+    off = [f"{n + 1 + i} (by {np.rad2deg(x):.0f} deg)" for i, x in enumerate(away) if x > _RIGID]
+    if not off:
+        return ""
+    return (
+        f"{recording.name}: the model takes joint {', '.join(off)} as rigid elsewhere; what that costs is in "
+        "the residual (gen-model --locked-angles, or more joints)"
+    )
 
 
 def observe(recording: Recording, observer: ModuleType, gain: float | None = None) -> Observation:

@@ -12,6 +12,10 @@ from residuum.symbolic.nominal import nominal_model
 RECORDINGS = Path(__file__).resolve().parents[2] / "shared" / "recordings"
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--update", action="store_true", help="write the golden files anew instead of comparing")
+
+
 @cache
 def _generated(robot: str, dof: int, variant: str = "full"):
     return generate(nominal_model(*load_robot(robot), dof, variant=variant))

@@ -93,7 +93,7 @@ def rotation_vector(r: Matrix) -> Matrix:
     angle = math.atan2(sine, cosine)
     if angle < 1e-9:
         return 0.5 * skew
-    if sine > 1e-6:
+    if sine > 1e-6 or cosine > 0.0:
         return angle * skew / (2.0 * sine)
     # Near half a turn the skew part vanishes; the axis is the dominant column of (R + 1).
     column = (r + np.eye(3))[:, int(np.argmax(np.diag(r)))]

@@ -17,6 +17,8 @@ from .world import IdleWorld
 JOINTS = 6
 ANGLE, SPEED, CURRENT = 270, 280, 290
 """First port registers of the joints: mrad, mrad/s, mA (UR article 16377, Modbus server)."""
+ROOM = 30.0
+"""Joint temperature in deg C where none was recorded."""
 
 
 class RecordedWorld(IdleWorld):
@@ -28,7 +30,8 @@ class RecordedWorld(IdleWorld):
         current: motor currents (T, 6) in A.
         encoding: how a negative port register appears. The script manual says signed, the Modbus article
             unsigned; a program should accept both.
-        rtde: further RTDE fields by name, a row or a value a frame.
+        rtde: further RTDE fields by name, a row or a value a frame; target_qd and joint_temperatures also
+            answer get_target_joint_speeds and get_joint_temp.
 
     Raises:
         ValueError: shapes do not agree.
@@ -50,6 +53,7 @@ class RecordedWorld(IdleWorld):
         self._q, self._qd, self._current = arrays
         self._encoding = encoding
         fields = dict(zip(("actual_q", "actual_qd", "actual_current"), arrays, strict=True))
+        fields |= {"target_qd": np.zeros((1, JOINTS)), "joint_temperatures": np.full((1, JOINTS), ROOM)}
         self._rtde = {**fields, **{name: np.asarray(value) for name, value in (rtde or {}).items()}}
 
     @property
@@ -66,6 +70,16 @@ class RecordedWorld(IdleWorld):
 
     def do_get_actual_joint_speeds(self) -> Value:  # type: ignore[override]
         return self._row(self._qd)
+
+    def do_get_target_joint_speeds(self) -> Value:  # type: ignore[override]
+        return self._row(self._rtde["target_qd"])
+
+    def do_get_joint_temp(self, j: Value) -> float:
+        if isinstance(j, bool) or not isinstance(j, int) or not 0 <= j < JOINTS:
+            raise Fault("get_joint_temp takes a joint from 0 to 5", "domain")
+        row = self._row(self._rtde["joint_temperatures"])
+        assert isinstance(row, Array)
+        return float(row[j])
 
     def do_get_actual_joint_positions_history(self, steps: Value) -> Value:
         if isinstance(steps, bool) or not isinstance(steps, int) or steps < 0:

@@ -58,6 +58,7 @@ class IdleWorld(Registers):
         sent: socket name and payload of everything sent.
         frame: steps passed.
         freedrive: whether freedrive is on.
+        payload: mass at the flange that is set, kg.
 
     """
 
@@ -71,6 +72,7 @@ class IdleWorld(Registers):
         self.sent: list[tuple[str, Value]] = []
         self.frame = 0
         self.freedrive = False
+        self.payload = 0.0
 
     def step(self) -> None:
         """One controller step of 2 ms has passed."""
@@ -126,6 +128,9 @@ class IdleWorld(Registers):
 
     def do_is_steady(self) -> bool:
         return True
+
+    def do_get_target_payload(self) -> float:
+        return self.payload
 
     # freedrive
 

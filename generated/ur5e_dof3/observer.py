@@ -8,6 +8,8 @@ Friction: none in this model; friction() returns zeros
 import numpy as np
 
 DOF = 3
+#: Angles at which the joints beyond are taken as rigid, rad.
+LOCKED_ANGLES = np.array([0.0, 0.0, 0.0])
 #: Joint torque per motor current, Nm/A.
 GAINS = np.array([10.1505, 10.1505, 10.1303])
 #: Detection thresholds at rest (Nm) and their growth with speed (Nm s/rad).
@@ -18,41 +20,105 @@ REFERENCE_TEMPERATURE = np.array([30.0, 30.0, 30.0])
 #: Default observer gain, 1/s.
 GAIN = 25.0
 
-#: Samples worked on at a time, so that the temporaries stay in cache.
-_BLOCK = 1024
+#: Samples worked on at a time: few enough for the cache, many enough to outweigh NumPy's calls.
+_BLOCK = 5000
+_add = np.add
+_cos = np.cos
+_multiply = np.multiply
+_sin = np.sin
+_subtract = np.subtract
 
 
-def _core(q2, q3, qd1, qd2, qd3):
-    t1 = np.cos(q2)
-    t2 = q2 + q3
-    t3 = np.cos(t2)
-    t4 = np.sin(t2)
-    t5 = t3*1.8796282 - t4*0.1860463
-    t6 = qd1*t4
-    t7 = qd2 + qd3
-    t8 = 0.07296735886*t6 - t7*0.0304215863605
-    t9 = qd1*t3
-    t10 = 0.07296735886*t9 - t7*0.198393142573 + t6*0.644090018218
-    t11 = np.sin(q2)
-    t12 = qd1*t11
-    t13 = 1.5449031225*t12 - qd2*0.421353034625
-    t14 = t1*0.425
-    t15 = t3*0.1860463 + 1.8796282*t4
-    t16 = t11*0.425
-    t17 = t5*t14 + t15*t16
-    t18 = t7*0.686344235062 + qd2*t17 + 0.0304215863605*t9 + t6*0.198393142573
-    t19 = qd2*t7
-    t20 = t6*t8 - (t9*t10 - t5*(9.81 + t16*t19))
-    t21 = t19 + qd1*qd1
-    t22 = t14*t21
-    t23 = t20 - t1*(qd1*t13 - 41.31726750000001) - t15*(t22 - t14*t19) - t16*(t5*t21)
+def _core(q2, q3, qd1, qd2, qd3, work):
+    # Momentum, beta and friction, written into the rows of work (16, T).
+    b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15, = work
+    _cos(q2, b0)
+    _add(q2, q3, b1)
+    _cos(b1, b2)
+    _multiply(b2, 1.8796282, b3)
+    _sin(b1, b1)
+    _multiply(b1, 0.1860463, b4)
+    _subtract(b3, b4, b4)
+    _multiply(b0, b4, b3)
+    _multiply(0.85, b3, b3)
+    _add(b3, 4.329627563950265, b3)
+    _multiply(qd1, b3, b3)
+    _multiply(qd1, b1, b5)
+    _multiply(0.07296735886, b5, b6)
+    _add(qd2, qd3, b7)
+    _multiply(b7, 0.0304215863605, b8)
+    _subtract(b6, b8, b8)
+    _multiply(b2, b8, b6)
+    _subtract(b3, b6, b6)
+    _multiply(qd1, b2, b3)
+    _multiply(0.07296735886, b3, b9)
+    _multiply(b7, 0.198393142573, b10)
+    _subtract(b9, b10, b10)
+    _multiply(b5, 0.644090018218, b9)
+    _add(b10, b9, b9)
+    _multiply(b1, b9, b10)
+    _subtract(b6, b10, b10)
+    _sin(q2, b6)
+    _multiply(qd1, b6, b11)
+    _multiply(1.5449031225, b11, b12)
+    _multiply(qd2, 0.421353034625, b13)
+    _subtract(b12, b13, b13)
+    _multiply(b6, b13, b12)
+    _subtract(b10, b12, b12)
+    _multiply(qd2, 3.4751462625, b10)
+    _multiply(b0, 0.425, b14)
+    _multiply(b4, b14, b15)
+    _multiply(b2, 0.1860463, b2)
+    _multiply(1.8796282, b1, b1)
+    _add(b2, b1, b1)
+    _multiply(b6, 0.425, b6)
+    _multiply(b1, b6, b2)
+    _add(b15, b2, b2)
+    _multiply(b7, b2, b15)
+    _add(b10, b15, b15)
+    _multiply(b7, 0.686344235062, b10)
+    _multiply(qd2, b2, b2)
+    _add(b10, b2, b2)
+    _multiply(0.0304215863605, b3, b10)
+    _add(b2, b10, b10)
+    _multiply(b5, 0.198393142573, b2)
+    _add(b10, b2, b2)
+    _add(b15, b2, b15)
+    _multiply(b11, 0.421353034625, b11)
+    _add(b15, b11, b11)
+    _multiply(qd3, 1.91513574, b15)
+    _add(b2, b15, b15)
+    _multiply(b5, b8, b8)
+    _multiply(b3, b9, b9)
+    _multiply(qd2, b7, b7)
+    _multiply(b6, b7, b3)
+    _add(9.81, b3, b3)
+    _multiply(b4, b3, b3)
+    _subtract(b9, b3, b3)
+    _subtract(b8, b3, b3)
+    _multiply(qd1, b13, b13)
+    _subtract(b13, 41.31726750000001, b13)
+    _multiply(b0, b13, b13)
+    _subtract(b3, b13, b13)
+    _multiply(qd1, qd1, b0)
+    _add(b7, b0, b0)
+    _multiply(b14, b0, b8)
+    _multiply(b14, b7, b7)
+    _subtract(b8, b7, b7)
+    _multiply(b1, b7, b7)
+    _subtract(b13, b7, b7)
+    _multiply(b4, b0, b0)
+    _multiply(b6, b0, b0)
+    _subtract(b7, b0, b0)
+    _multiply(b1, b8, b8)
+    _subtract(b3, b8, b8)
     return (
-        qd1*(0.85*(t1*t5) + 4.329627563950265) - t3*t8 - t4*t10 - t11*t13,
-        qd2*3.4751462625 + t7*t17 + t18 + t12*0.421353034625,
-        t18 + qd3*1.91513574,
+        b12,
+        b11,
+        b15,
         0.0,
-        t23,
-        t20 - t15*t22,
+        b0,
+        b8,
         0.0,
         0.0,
         0.0,
@@ -227,23 +293,26 @@ def _energy(q2, q3, qd1, qd2, qd3):
     )
 
 
-def _apply(function, used, size, *arrays):
+def _apply(function, used, size, *arrays, work=0):
     """Evaluate a straight-line function block by block.
 
-    used: (which array, which column) of each argument; size: number of results. Returns (..., size).
+    used: (which array, which column) of each argument; size: number of results; work: number of work
+    arrays that the function wants. Returns (..., size).
     """
     arrays = [np.asarray(a, dtype=float) for a in arrays]
     shape = np.broadcast_shapes(*(a.shape for a in arrays))
     if not shape or shape[-1] != DOF:
         raise ValueError(f"the last axis holds the joints: {DOF} expected, the shape is {shape}")
     flat = [np.broadcast_to(a, shape).reshape(-1, DOF) for a in arrays]
-    out = np.empty((len(flat[0]), size))
-    for start in range(0, len(out), _BLOCK):
+    out = np.empty((size, len(flat[0])))
+    for start in range(0, out.shape[1], _BLOCK):
         block = slice(start, start + _BLOCK)
         columns = [np.ascontiguousarray(flat[i][block, j]) for i, j in used]
-        for k, value in enumerate(function(*columns)):
-            out[block, k] = value
-    return out.reshape(*shape[:-1], size)
+        if work:
+            columns.append(np.empty((work, out[0, block].size)))
+        for row, value in zip(out, function(*columns)):
+            row[block] = value
+    return out.T.reshape(*shape[:-1], size)
 
 
 def momentum(q, qd):
@@ -325,7 +394,7 @@ class Observer:
         dt: seconds from the sample before to each sample (T,), where they are not all the same.
         """
         hot = REFERENCE_TEMPERATURE if temperature is None else temperature
-        values = _apply(_core, [(0, 1), (0, 2), (1, 0), (1, 1), (1, 2)], 3 * DOF, q, qd, hot)
+        values = _apply(_core, [(0, 1), (0, 2), (1, 0), (1, 1), (1, 2)], 3 * DOF, q, qd, hot, work=16)
         momentum, beta, loss = values[:, :DOF], values[:, DOF : 2 * DOF], values[:, 2 * DOF :]
         first = momentum[:1] if self._momentum is None else self._momentum[None]
         change = np.diff(momentum, axis=0, prepend=first)

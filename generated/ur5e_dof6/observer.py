@@ -8,6 +8,8 @@ Friction: none in this model; friction() returns zeros
 import numpy as np
 
 DOF = 6
+#: Angles at which the joints beyond are taken as rigid, rad.
+LOCKED_ANGLES = np.array([])
 #: Joint torque per motor current, Nm/A.
 GAINS = np.array([10.1505, 10.1505, 10.1303, 8.1002, 8.2012, 8.08])
 #: Detection thresholds at rest (Nm) and their growth with speed (Nm s/rad).
@@ -18,88 +20,257 @@ REFERENCE_TEMPERATURE = np.array([30.0, 30.0, 30.0, 30.0, 30.0, 30.0])
 #: Default observer gain, 1/s.
 GAIN = 25.0
 
-#: Samples worked on at a time, so that the temporaries stay in cache.
-_BLOCK = 1024
+#: Samples worked on at a time: few enough for the cache, many enough to outweigh NumPy's calls.
+_BLOCK = 5000
+_add = np.add
+_cos = np.cos
+_multiply = np.multiply
+_sin = np.sin
+_subtract = np.subtract
 
 
-def _core(q2, q3, q4, q5, qd1, qd2, qd3, qd4, qd5, qd6):
-    t1 = q2 + q3
-    t2 = q4 + t1
-    t3 = np.cos(t2)
-    t4 = qd2 + qd3
-    t5 = qd4 + t4
-    t6 = np.sin(q5)
-    t7 = 0.057172965*t6
-    t8 = np.cos(q2)
-    t9 = (-0.425)*t8
-    t10 = qd1*t9
-    t11 = np.cos(t1)
-    t12 = (-0.3922)*t11
-    t13 = t10 + qd1*t12
-    t14 = np.cos(q5)
-    t15 = np.sin(t2)
-    t16 = qd1*t15
-    t17 = t5*t14 - t6*t16
-    t18 = qd1*t3
-    t19 = qd5 - t18
-    t20 = 0.057172965*t14
-    t21 = np.sin(q2)
-    t22 = (-0.425)*t21
-    t23 = qd2*t22
-    t24 = np.sin(t1)
-    t25 = (-0.3922)*t24
-    t26 = t23 + t4*t25
-    t27 = qd1*0.1333 - t26
-    t28 = qd2*t9
-    t29 = t28 + t4*t12
-    t30 = t3*t27 + t15*t29
-    t31 = t7*t13 + (-0.0056619090105)*t17 + 0.006177278545565*t19 - t20*t30
-    t32 = 0.02475967735*t5 - t31
-    t33 = t5*t7 + t16*t20
-    t34 = t19*t20
-    t35 = t15*t33 - t3*t34
-    t36 = qd1*t21
-    t37 = (-1.5449031225)*t36 + qd2*0.3970545245
-    t38 = qd1*t24
-    t39 = (-0.66090936804)*t38 + t4*0.1759699057
-    t40 = t14*t16 + t5*t6
-    t41 = 0.003983078545565*t40
-    t42 = t3*t29 - t15*t27
-    t43 = 0.0001321172*(t17 + qd6)
-    t44 = t43 + (-0.0056619090105)*t19
-    t45 = t16*0.019013549822 + t14*t41 - t20*t42 - t6*t44
-    t46 = t15*(-0.1860463)
-    t47 = qd1*t46 - t7*t19
-    t48 = t11*(-1.8796282)
-    t49 = t47 - qd1*t48
-    t50 = 4.3082079729357*qd1 + t3*t32 + 0.1333*t35 + t21*t37 + t24*t39 + t15*t45 - t9*t49
-    t51 = 0.02475967735*t18 - (t29*t46 + t7*t42) + t5*0.021207749822 + t14*t44 + t6*t41
-    t52 = t3*(-0.1860463)
-    t53 = t51 + t26*t52
-    t54 = t5*t46 + t3*t33 + t15*t34
-    t55 = t35 - t5*t52
-    t56 = t24*(-1.8796282)
-    t57 = t53 - t12*t54 + t28*t48 + t38*0.1759699057 + t4*0.66500436804 - t25*t55 + t23*t56
-    t58 = t4*t48 - t54
-    t59 = t55 - t4*t56
-    t60 = t7*(t3*9.81) - t46*((-9.81) + t5*t26) - t34*t42 + t18*t45 - t52*(t5*t29 + qd1*t13)
-    t61 = t60 + t30*t33 - t16*t32
-    t62 = t61 - t12*(t4*t55) + t48*((-9.81) + t4*t23) + t39*(qd1*t11) + t25*(t4*t54 + qd1*t47)
-    t63 = t62 - t56*(t4*t28 + qd1*t10)
-    t64 = t63 - t9*(qd2*t59) + t37*(qd1*t8) - t22*(qd2*t58 - qd1*t49) - t8*(-41.31726750000001)
-    t65 = t7*(t19*t30 + t16*t42) + t17*t41 - t20*(t5*t42 - t15*9.81 - t13*t19) - t40*t44
+def _core(q2, q3, q4, q5, qd1, qd2, qd3, qd4, qd5, qd6, work):
+    # Momentum, beta and friction, written into the rows of work (50, T).
+    b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15, b16, b17, b18, b19, b20, b21, b22, b23, b24, b25, b26, b27, b28, b29, b30, b31, b32, b33, b34, b35, b36, b37, b38, b39, b40, b41, b42, b43, b44, b45, b46, b47, b48, b49, = work
+    _multiply(4.3082079729357, qd1, b0)
+    _add(q2, q3, b1)
+    _add(q4, b1, b2)
+    _cos(b2, b3)
+    _add(qd2, qd3, b4)
+    _add(qd4, b4, b5)
+    _multiply(0.02475967735, b5, b6)
+    _sin(q5, b7)
+    _multiply(0.057172965, b7, b8)
+    _cos(q2, b9)
+    _multiply(-0.425, b9, b10)
+    _multiply(qd1, b10, b11)
+    _cos(b1, b12)
+    _multiply(-0.3922, b12, b13)
+    _multiply(qd1, b13, b14)
+    _add(b11, b14, b14)
+    _multiply(b8, b14, b15)
+    _cos(q5, b16)
+    _multiply(b5, b16, b17)
+    _sin(b2, b2)
+    _multiply(qd1, b2, b18)
+    _multiply(b7, b18, b19)
+    _subtract(b17, b19, b19)
+    _multiply(-0.0056619090105, b19, b17)
+    _add(b15, b17, b17)
+    _multiply(qd1, b3, b15)
+    _subtract(qd5, b15, b20)
+    _multiply(0.006177278545565, b20, b21)
+    _add(b17, b21, b21)
+    _multiply(0.057172965, b16, b17)
+    _multiply(qd1, 0.1333, b22)
+    _sin(q2, b23)
+    _multiply(-0.425, b23, b24)
+    _multiply(qd2, b24, b25)
+    _sin(b1, b1)
+    _multiply(-0.3922, b1, b26)
+    _multiply(b4, b26, b27)
+    _add(b25, b27, b27)
+    _subtract(b22, b27, b22)
+    _multiply(b3, b22, b28)
+    _multiply(qd2, b10, b29)
+    _multiply(b4, b13, b30)
+    _add(b29, b30, b30)
+    _multiply(b2, b30, b31)
+    _add(b28, b31, b31)
+    _multiply(b17, b31, b28)
+    _subtract(b21, b28, b28)
+    _subtract(b6, b28, b6)
+    _multiply(b3, b6, b21)
+    _add(b0, b21, b21)
+    _multiply(b5, b8, b0)
+    _multiply(b18, b17, b32)
+    _add(b0, b32, b32)
+    _multiply(b2, b32, b0)
+    _multiply(b20, b17, b33)
+    _multiply(b3, b33, b34)
+    _subtract(b0, b34, b34)
+    _multiply(0.1333, b34, b0)
+    _add(b21, b0, b0)
+    _multiply(qd1, b23, b21)
+    _multiply(-1.5449031225, b21, b35)
+    _multiply(qd2, 0.3970545245, b36)
+    _add(b35, b36, b36)
+    _multiply(b23, b36, b23)
+    _add(b0, b23, b23)
+    _multiply(qd1, b1, b0)
+    _multiply(-0.66090936804, b0, b35)
+    _multiply(b4, 0.1759699057, b37)
+    _add(b35, b37, b37)
+    _multiply(b1, b37, b35)
+    _add(b23, b35, b35)
+    _multiply(b18, 0.019013549822, b23)
+    _multiply(b16, b18, b38)
+    _multiply(b5, b7, b39)
+    _add(b38, b39, b39)
+    _multiply(0.003983078545565, b39, b38)
+    _multiply(b16, b38, b40)
+    _add(b23, b40, b40)
+    _multiply(b3, b30, b23)
+    _multiply(b2, b22, b22)
+    _subtract(b23, b22, b22)
+    _multiply(b17, b22, b23)
+    _subtract(b40, b23, b23)
+    _add(b19, qd6, b40)
+    _multiply(0.0001321172, b40, b40)
+    _multiply(-0.0056619090105, b20, b41)
+    _add(b40, b41, b41)
+    _multiply(b7, b41, b42)
+    _subtract(b23, b42, b42)
+    _multiply(b2, b42, b23)
+    _add(b35, b23, b23)
+    _multiply(b2, -0.1860463, b35)
+    _multiply(qd1, b35, b43)
+    _multiply(b8, b20, b44)
+    _subtract(b43, b44, b44)
+    _multiply(b12, -1.8796282, b43)
+    _multiply(qd1, b43, b45)
+    _subtract(b44, b45, b45)
+    _multiply(b10, b45, b46)
+    _subtract(b23, b46, b46)
+    _multiply(b13, b44, b23)
+    _subtract(b46, b23, b23)
+    _multiply(b11, b43, b46)
+    _add(b23, b46, b46)
+    _multiply(b14, b35, b23)
+    _subtract(b46, b23, b23)
+    _multiply(0.02475967735, b15, b46)
+    _multiply(b30, b35, b47)
+    _multiply(b8, b22, b48)
+    _add(b47, b48, b48)
+    _subtract(b46, b48, b48)
+    _multiply(b5, 0.021207749822, b46)
+    _add(b48, b46, b46)
+    _multiply(b16, b41, b16)
+    _add(b46, b16, b16)
+    _multiply(b7, b38, b7)
+    _add(b16, b7, b7)
+    _multiply(b3, -0.1860463, b16)
+    _multiply(b27, b16, b46)
+    _add(b7, b46, b46)
+    _multiply(b5, b35, b7)
+    _multiply(b3, b32, b48)
+    _add(b7, b48, b48)
+    _multiply(b2, b33, b7)
+    _add(b48, b7, b7)
+    _multiply(b13, b7, b48)
+    _subtract(b46, b48, b48)
+    _multiply(b29, b43, b47)
+    _add(b48, b47, b47)
+    _multiply(b0, 0.1759699057, b0)
+    _add(b47, b0, b0)
+    _multiply(b4, 0.66500436804, b47)
+    _add(b0, b47, b47)
+    _multiply(b5, b16, b0)
+    _subtract(b34, b0, b0)
+    _multiply(b26, b0, b34)
+    _subtract(b47, b34, b34)
+    _multiply(b1, -1.8796282, b1)
+    _multiply(b25, b1, b47)
+    _add(b34, b47, b47)
+    _multiply(b4, b43, b34)
+    _subtract(b34, b7, b34)
+    _multiply(b10, b34, b48)
+    _add(b47, b48, b48)
+    _multiply(b21, 0.3970545245, b21)
+    _add(b48, b21, b21)
+    _multiply(qd2, 3.4751462625, b48)
+    _add(b21, b48, b48)
+    _multiply(b4, b1, b21)
+    _subtract(b0, b21, b21)
+    _multiply(b24, b21, b49)
+    _subtract(b48, b49, b49)
+    _multiply(qd3, 1.91513574, b48)
+    _add(b47, b48, b48)
+    _multiply(qd4, 0.20402, b47)
+    _add(b46, b47, b47)
+    _multiply(qd5, 0.20402, b46)
+    _add(b28, b46, b46)
+    _multiply(qd6, 0.20402, b28)
+    _add(b40, b28, b28)
+    _multiply(b3, 9.81, b3)
+    _multiply(b8, b3, b3)
+    _multiply(b5, b27, b27)
+    _add(-9.81, b27, b27)
+    _multiply(b35, b27, b27)
+    _subtract(b3, b27, b27)
+    _multiply(b33, b22, b33)
+    _subtract(b27, b33, b33)
+    _multiply(b15, b42, b42)
+    _add(b33, b42, b42)
+    _multiply(b5, b30, b30)
+    _multiply(qd1, b14, b33)
+    _add(b30, b33, b33)
+    _multiply(b16, b33, b33)
+    _subtract(b42, b33, b33)
+    _multiply(b31, b32, b32)
+    _add(b33, b32, b32)
+    _multiply(b18, b6, b6)
+    _subtract(b32, b6, b6)
+    _multiply(b4, b0, b0)
+    _multiply(b13, b0, b0)
+    _subtract(b6, b0, b0)
+    _multiply(b4, b25, b25)
+    _add(-9.81, b25, b25)
+    _multiply(b43, b25, b25)
+    _add(b0, b25, b25)
+    _multiply(qd1, b12, b12)
+    _multiply(b37, b12, b12)
+    _add(b25, b12, b12)
+    _multiply(b4, b7, b7)
+    _multiply(qd1, b44, b44)
+    _add(b7, b44, b44)
+    _multiply(b26, b44, b44)
+    _add(b12, b44, b44)
+    _multiply(b4, b29, b29)
+    _multiply(qd1, b11, b11)
+    _add(b29, b11, b11)
+    _multiply(b1, b11, b11)
+    _subtract(b44, b11, b11)
+    _multiply(qd2, b21, b21)
+    _multiply(b10, b21, b21)
+    _subtract(b11, b21, b21)
+    _multiply(qd1, b9, b10)
+    _multiply(b36, b10, b10)
+    _add(b21, b10, b10)
+    _multiply(qd2, b34, b34)
+    _multiply(qd1, b45, b45)
+    _subtract(b34, b45, b45)
+    _multiply(b24, b45, b45)
+    _subtract(b10, b45, b45)
+    _multiply(b9, -41.31726750000001, b9)
+    _subtract(b45, b9, b9)
+    _multiply(b20, b31, b31)
+    _multiply(b18, b22, b18)
+    _add(b31, b18, b18)
+    _multiply(b8, b18, b18)
+    _multiply(b19, b38, b38)
+    _add(b18, b38, b38)
+    _multiply(b5, b22, b22)
+    _multiply(b2, 9.81, b2)
+    _subtract(b22, b2, b2)
+    _multiply(b14, b20, b20)
+    _subtract(b2, b20, b20)
+    _multiply(b17, b20, b20)
+    _subtract(b38, b20, b20)
+    _multiply(b39, b41, b41)
+    _subtract(b20, b41, b41)
     return (
-        t50 - t12*t47 + t10*t48 - t13*t46,
-        t57 + t9*t58 + t36*0.3970545245 + qd2*3.4751462625 - t22*t59,
-        t57 + qd3*1.91513574,
-        t53 + qd4*0.20402,
-        t31 + qd5*0.20402,
-        t43 + qd6*0.20402,
+        b23,
+        b49,
+        b48,
+        b47,
+        b46,
+        b28,
         0.0,
-        t64,
-        t63,
-        t61,
-        t65,
+        b9,
+        b11,
+        b6,
+        b41,
         0.0,
         0.0,
         0.0,
@@ -585,23 +756,26 @@ def _energy(q2, q3, q4, q5, qd1, qd2, qd3, qd4, qd5, qd6):
     )
 
 
-def _apply(function, used, size, *arrays):
+def _apply(function, used, size, *arrays, work=0):
     """Evaluate a straight-line function block by block.
 
-    used: (which array, which column) of each argument; size: number of results. Returns (..., size).
+    used: (which array, which column) of each argument; size: number of results; work: number of work
+    arrays that the function wants. Returns (..., size).
     """
     arrays = [np.asarray(a, dtype=float) for a in arrays]
     shape = np.broadcast_shapes(*(a.shape for a in arrays))
     if not shape or shape[-1] != DOF:
         raise ValueError(f"the last axis holds the joints: {DOF} expected, the shape is {shape}")
     flat = [np.broadcast_to(a, shape).reshape(-1, DOF) for a in arrays]
-    out = np.empty((len(flat[0]), size))
-    for start in range(0, len(out), _BLOCK):
+    out = np.empty((size, len(flat[0])))
+    for start in range(0, out.shape[1], _BLOCK):
         block = slice(start, start + _BLOCK)
         columns = [np.ascontiguousarray(flat[i][block, j]) for i, j in used]
-        for k, value in enumerate(function(*columns)):
-            out[block, k] = value
-    return out.reshape(*shape[:-1], size)
+        if work:
+            columns.append(np.empty((work, out[0, block].size)))
+        for row, value in zip(out, function(*columns)):
+            row[block] = value
+    return out.T.reshape(*shape[:-1], size)
 
 
 def momentum(q, qd):
@@ -683,7 +857,7 @@ class Observer:
         dt: seconds from the sample before to each sample (T,), where they are not all the same.
         """
         hot = REFERENCE_TEMPERATURE if temperature is None else temperature
-        values = _apply(_core, [(0, 1), (0, 2), (0, 3), (0, 4), (1, 0), (1, 1), (1, 2), (1, 3), (1, 4), (1, 5)], 3 * DOF, q, qd, hot)
+        values = _apply(_core, [(0, 1), (0, 2), (0, 3), (0, 4), (1, 0), (1, 1), (1, 2), (1, 3), (1, 4), (1, 5)], 3 * DOF, q, qd, hot, work=50)
         momentum, beta, loss = values[:, :DOF], values[:, DOF : 2 * DOF], values[:, 2 * DOF :]
         first = momentum[:1] if self._momentum is None else self._momentum[None]
         change = np.diff(momentum, axis=0, prepend=first)

@@ -141,6 +141,19 @@ def test_bad_input_gets_one_line_and_leaves_nothing(arguments, words, module, mo
     assert not [p for p in tmp_path.iterdir() if p.name.startswith(".")]
 
 
+def test_a_reduced_model_says_where_the_wrist_is_not(generated, module) -> None:
+    from residuum.identify.observation import wrist_note
+
+    three = load_text(generated("ur5e", 3).files["observer.py"])
+    time = np.arange(0, 2, 0.002)
+    q, qd, current = smooth(module, time)
+    assert "joint 4" in wrist_note(Recording("run", time, q, current, qd=qd), three)
+    still = q.copy()
+    still[:, 3:] = 0.0
+    assert wrist_note(Recording("run", time, still, current, qd=qd), three) == ""
+    assert wrist_note(Recording("run", time, q, current, qd=qd), module) == ""
+
+
 def test_unknown_verb_and_help() -> None:
     done = residuum("obsreve")
     assert done.returncode == 2
