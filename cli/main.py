@@ -11,7 +11,9 @@ from .run import run
 VERBS = {
     "audit": "Say what is wrong with recordings.",
     "check": "Check a URScript program.",
+    "fit": "Fit a baseline model to recordings.",
     "observe": "Residual and external torque along a recording.",
+    "predict": "Motor currents along a recording from its motion alone.",
 }
 
 

@@ -67,7 +67,7 @@ def observe(recording: Path, model: Path, out: Path, plot: Path | None, gain: fl
 
 def load_observer(model: Path) -> ModuleType:
     """Return the generated observer of a folder, or generate it from a model.toml."""
-    from ..codegen.generate import generate
+    from ..codegen.generate import observer_text
     from ..codegen.load import load_file, load_text
     from ..robots.model import Model
     from ..robots.toml import read
@@ -75,7 +75,7 @@ def load_observer(model: Path) -> ModuleType:
     if model.is_dir():
         return load_file(model / "observer.py")
     data, _ = read(Model, model)
-    return load_text(generate(data).files["observer.py"])
+    return load_text(observer_text(data))
 
 
 def _write_csv(path: Path, found: "Observation") -> None:

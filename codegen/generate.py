@@ -72,17 +72,10 @@ def render(
     environment = _environment()
     shared = _shared_context(symbolic)
     scripts = guard_scripts(environment, shared, symbolic, found, options)
-    in_numpy = {n: NumpyFunction(n, body(x, NUMPY), x) for n, x in found.items() if n != "momentum_and_beta"}
     in_c = [CFunction(n, body(x, C), x, model.name.upper()) for n, x in found.items()]
     files = {
         "__init__.py": f'"""{model.title}, {model.dof} joints: written by gen-model; do not edit."""\n',
-        "observer.py": environment.get_template("model/observer.py.jinja").render(
-            **shared,
-            functions=in_numpy.values(),
-            core=in_numpy["core"],
-            block=in_place(found["core"]),
-            term_notes=_term_notes(symbolic),
-        ),
+        "observer.py": _numpy(environment, shared, symbolic, found),
         "observer.h": environment.get_template("model/observer.h.jinja").render(**shared, functions=in_c),
         "observer.c": environment.get_template("model/observer.c.jinja").render(**shared, functions=in_c),
         **scripts,
@@ -92,6 +85,28 @@ def render(
         "model.toml": model_toml(model),
     }
     return Generated(files, found, symbolic)
+
+
+def observer_text(model: Model) -> str:
+    """Return observer.py alone, for running a model at once."""
+    symbolic = symbolic_model(model)
+    return _numpy(_environment(), _shared_context(symbolic), symbolic, listings(symbolic))
+
+
+def _numpy(
+    environment: Environment,
+    shared: Mapping[str, object],
+    symbolic: SymbolicModel,
+    found: Mapping[str, Listing],
+) -> str:
+    functions = {n: NumpyFunction(n, body(x, NUMPY), x) for n, x in found.items() if n != "momentum_and_beta"}
+    return environment.get_template("model/observer.py.jinja").render(
+        **shared,
+        functions=functions.values(),
+        core=functions["core"],
+        block=in_place(found["core"]),
+        term_notes=_term_notes(symbolic),
+    )
 
 
 def urscripts(symbolic: SymbolicModel, found: Mapping[str, Listing], options: Options) -> dict[str, str]:

@@ -28,9 +28,13 @@ def audit(recording: Recording) -> AuditReport:
     return clean(recording)[1]
 
 
-def clean(recording: Recording) -> tuple[Recording, AuditReport]:
+def clean(
+    recording: Recording, motion_only: bool = False, with_clock: bool = True
+) -> tuple[Recording, AuditReport]:
     """Audit, and give the recording without its bad rows and unusable optional channels.
 
+    `motion_only`: say nothing about the measured currents (for recordings that were read without them).
+    `with_clock` False: do not look for a delay of current behind motion (for later pieces of one file).
     When the verdict is "refuse", what is given is as far as cleaning came, and not to be used:
     `report.require()` raises InputError then.
     """
@@ -39,15 +43,18 @@ def clean(recording: Recording) -> tuple[Recording, AuditReport]:
     findings = _lost(recording) + findings
     kept, findings = _drop(kept, findings, (not_finite, time_order))
     if not _refused(findings) and len(kept) >= FEWEST:
-        kept, findings = _rows(kept, findings)
+        kept, findings = _rows(kept, findings, motion_only)
     if not _refused(findings):
         findings += coverage(kept, rows_read)
     if not _refused(findings):
-        findings += gaps(kept) + spikes(kept) + clock(kept)
+        findings += gaps(kept) + ([] if motion_only else spikes(kept))
+        findings += clock(kept) if with_clock and not motion_only else []
     return kept, AuditReport(recording.name, tuple(findings), rows_read, len(kept), summary(kept))
 
 
-def _rows(kept: Recording, findings: list[Finding]) -> tuple[Recording, list[Finding]]:
+def _rows(
+    kept: Recording, findings: list[Finding], motion_only: bool
+) -> tuple[Recording, list[Finding]]:
     # units come first: in the wrong unit every row is absurd; medians judge them, which bad rows spare
     units = motion(kept)
     if _refused(units):
@@ -57,7 +64,7 @@ def _rows(kept: Recording, findings: list[Finding]) -> tuple[Recording, list[Fin
         absurd,
         lambda r: jumps(r, trust_speed=not contradicted),
         stalled_rows,
-        stuck,
+        *(() if motion_only else (stuck,)),
     )
     return _drop(kept, findings + units, checks)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import InputError
-from .channels import CURRENT, OPTIONAL, OTHERS, POSITION, REQUIRED, Channel
+from .channels import CURRENT, OPTIONAL, OTHERS, PER_JOINT, REQUIRED, Channel
 from .recording import Dropped, FloatArray, IntArray, Recording, Source
 
 MOST_JOINTS = 6
@@ -39,25 +39,28 @@ class Layout:
                 named[channel.field] = np.ascontiguousarray(value)
             else:
                 others[channel.name] = np.ascontiguousarray(value)
+        named.setdefault("current", np.broadcast_to(0.0, named["q"].shape))
         return Recording(
             name=name, source=source, rows=rows, dropped=dropped, ignored=self.ignored, others=others, **named
         )
 
 
-def layout(names: Sequence[str], where: str, extra: Sequence[str] = ()) -> Layout:
+def layout(names: Sequence[str], where: str, extra: Sequence[str] = (), current: bool = True) -> Layout:
     """Find the channels among the column `names`; `where` begins the message of an InputError.
 
+    `current` False: the measured currents are neither needed nor taken.
     `extra` names further columns to keep, each as a channel of its own in `Recording.others`.
     Raises InputError when a needed column is missing or a used one stands there twice.
     """
     index = {name: k for k, name in enumerate(names)}
-    joints = _joints(index, where)
-    _require(index, [c for channel in REQUIRED for c in channel.columns(joints)], where)
+    required = [c for c in REQUIRED if current or c is not CURRENT]
+    joints = _joints(index, required)
+    _require(index, [c for channel in required for c in channel.columns(joints)], where)
     optional = [*OPTIONAL, *OTHERS, *(Channel(name, None, 1, "as recorded") for name in extra)]
     _require(index, extra, where)
     complete = [c for c in optional if all(name in index for name in c.columns(joints))]
     partial = [c for c in optional if c not in complete]
-    channels = [*REQUIRED, *complete]
+    channels = [*required, *complete]
     _refuse_twice(names, {name for c in channels for name in c.columns(joints)}, where)
     columns = sorted({index[name] for c in channels for name in c.columns(joints)})
     position = {column: k for k, column in enumerate(columns)}
@@ -69,9 +72,9 @@ def layout(names: Sequence[str], where: str, extra: Sequence[str] = ()) -> Layou
     )
 
 
-def _joints(index: Mapping[str, int], where: str) -> int:
-    present = [k for k in range(MOST_JOINTS) if f"{POSITION.name}_{k}" in index]
-    present += [k for k in range(MOST_JOINTS) if f"{CURRENT.name}_{k}" in index]
+def _joints(index: Mapping[str, int], required: Sequence[Channel]) -> int:
+    per_joint = [c.name for c in required if c.width == PER_JOINT]
+    present = [k for k in range(MOST_JOINTS) for name in per_joint if f"{name}_{k}" in index]
     return max(present, default=0) + 1
 
 

@@ -14,13 +14,13 @@ from .table import Parsed
 MAGIC = b"PAR1"
 
 
-def open_parquet(path: Path, extra: Sequence[str]) -> tuple[pq.ParquetFile, Layout]:
+def open_parquet(path: Path, extra: Sequence[str], current: bool = True) -> tuple[pq.ParquetFile, Layout]:
     """Open and find the channels. Raises InputError for a broken file or missing columns."""
     try:
         file = pq.ParquetFile(path)
     except (pa.ArrowException, OSError) as error:
         raise InputError(f"{path}: broken Parquet ({_line(error)}); write the file again") from error
-    return file, layout(file.schema_arrow.names, str(path), extra)
+    return file, layout(file.schema_arrow.names, str(path), extra, current)
 
 
 def parquet_tables(path: Path, file: pq.ParquetFile, found: Layout, rows: int) -> Iterator[Parsed]:

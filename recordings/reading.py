@@ -19,21 +19,28 @@ CUT = "last line has no line end and may be cut"
 ROWS = 100_000
 
 
-def read(path: str | Path, extra: Sequence[str] = (), progress: Progress | None = None) -> Recording:
+def read(
+    path: str | Path, extra: Sequence[str] = (), progress: Progress | None = None, current: bool = True
+) -> Recording:
     """Read a recording whole.
 
     Needed columns: `timestamp`, `actual_q_0..`, `actual_current_0..`; every other RTDE channel is taken when
     all its columns are there, and further columns are ignored unless `extra` names them (they then stand in
     `Recording.others`). Rows with the wrong number of cells or with text for a number are left out and
-    listed in `Recording.dropped`; an empty cell is NaN. `progress` is called with the share read, 0..1.
+    listed in `Recording.dropped`; an empty cell is NaN. With `current` False the measured currents are
+    neither needed nor read, and `Recording.current` is zero. `progress` is called with the share read, 0..1.
 
     Raises InputError, one line with file, row or column and remedy, when nothing can be made of the file.
     """
-    return concatenate(list(read_chunks(path, extra=extra, progress=progress)))
+    return concatenate(list(read_chunks(path, extra=extra, progress=progress, current=current)))
 
 
 def read_chunks(
-    path: str | Path, rows: int = ROWS, extra: Sequence[str] = (), progress: Progress | None = None
+    path: str | Path,
+    rows: int = ROWS,
+    extra: Sequence[str] = (),
+    progress: Progress | None = None,
+    current: bool = True,
 ) -> Iterator[Recording]:
     """Read a recording in pieces of `rows` samples (the last may be shorter), in order and with flat memory.
 
@@ -45,12 +52,12 @@ def read_chunks(
         raise InputError(f"{path}: is a folder; give the recordings in it")
     digest = sha256(path)
     if magic(path) == MAGIC:
-        file, found = open_parquet(path, extra)
+        file, found = open_parquet(path, extra, current)
         tables = parquet_tables(path, file, found, rows)
         source = Source(path.name, digest, "parquet")
     else:
         start, rest = header(blocks(path), str(path))
-        found = layout(start.names, str(path), extra)
+        found = layout(start.names, str(path), extra, current)
         form = Format(start.delimiter, start.decimal, found.width, found.columns)
         tables = _text_tables(rest, form, progress, path.stat().st_size)
         source = Source(path.name, digest, "blank" if start.delimiter == BLANK else start.delimiter)
