@@ -121,7 +121,7 @@ def draw(path: Path, found: "Observation", name: str, module: ModuleType) -> Non
         panel.set_title(text, loc="left", fontsize=9)
         panel.set_ylabel("Nm")
         panel.grid(alpha=0.3)
-    panels[0].legend(loc="upper right", fontsize=8)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper right", fontsize=8, ncols=2)
     panels[-1].set_xlabel("time, s")
     note = (
         "no friction terms in this model: residual = external torque"

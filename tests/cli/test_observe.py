@@ -5,6 +5,7 @@ import sys
 
 import numpy as np
 import pytest
+
 from residuum.codegen.generate import generate
 from residuum.codegen.load import load_text
 from residuum.identify.observation import observe
