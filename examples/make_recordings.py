@@ -11,6 +11,7 @@ import io
 from pathlib import Path
 
 import numpy as np
+
 from residuum.robots import load_robot
 from residuum.virtual import Contact, Plant, Recording, simulate
 from residuum.virtual.motions import fourier
