@@ -52,9 +52,7 @@ def clean(
     return kept, AuditReport(recording.name, tuple(findings), rows_read, len(kept), summary(kept))
 
 
-def _rows(
-    kept: Recording, findings: list[Finding], motion_only: bool
-) -> tuple[Recording, list[Finding]]:
+def _rows(kept: Recording, findings: list[Finding], motion_only: bool) -> tuple[Recording, list[Finding]]:
     # units come first: in the wrong unit every row is absurd; medians judge them, which bad rows spare
     units = motion(kept)
     if _refused(units):

@@ -92,7 +92,7 @@ def test_real_deviation_is_detected_in_numpys_step(detector, real_recordings) ->
     made = printer("ur10e", 6, 7.5, 2.0)
     rows = real(made.observer, read(real_recordings / "ur10e" / "one_joint_3.csv"), seconds=12.0)
     found, (step, joint) = compare(made, rows, "modbus", detector)
-    print(detector,step,joint,found.begin)
+    print(detector, step, joint, found.begin)
     assert joint == found.joint > 0
     assert step == len(found.frames) - 1 > found.begin + 200
 
@@ -115,4 +115,6 @@ def test_subtracted_bias_is_the_mean_at_rest() -> None:
     found = track(text, rows.world(), len(rows.q), 3)
     bias = found.residual[found.begin - 90 : found.begin].mean(axis=0)
     assert abs(bias[1] + 0.8 * made.observer.GAINS[1]) < 0.2
-    assert np.allclose(found.score[found.begin :], np.abs(found.residual[found.begin :] - bias) / 25.0, atol=1e-9)
+    assert np.allclose(
+        found.score[found.begin :], np.abs(found.residual[found.begin :] - bias) / 25.0, atol=1e-9
+    )

@@ -24,7 +24,13 @@ def test_options_reach_the_program(tmp_path) -> None:
     assert done.exit_code == 0, done.output
     text = (tmp_path / "ur5e_dof1" / "collision_guard.script").read_text()
     assert [d for d in check(text, "10.11") if d.severity != "note"] == []
-    for words in ("movej([0.0, -1.57", "get_standard_digital_in(2)", "rs_payload = 0.7", "speedj(away", "rs_votes"):
+    for words in (
+        "movej([0.0, -1.57",
+        "get_standard_digital_in(2)",
+        "rs_payload = 0.7",
+        "speedj(away",
+        "rs_votes",
+    ):
         assert words in text
     assert (tmp_path / "ur5e_dof1" / "probe.script").read_text().startswith("def probe():\n")
     assert (tmp_path / "ur5e_dof1" / "snapshot.script").read_text().startswith("sec snapshot():\n")

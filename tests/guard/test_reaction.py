@@ -122,7 +122,8 @@ def test_the_frame_of_the_guard_counts_operations(small, collision) -> None:
 
 
 @pytest.mark.parametrize(
-    ("detector", "bits"), [("static", {1}), ("speed", {2}), ("cusum", {4}), ("velocity", {8}), ("vote", {6, 10, 12, 14})]
+    ("detector", "bits"),
+    [("static", {1}), ("speed", {2}), ("cusum", {4}), ("velocity", {8}), ("vote", {6, 10, 12, 14})],
 )
 def test_the_detectors_that_agreed_are_told(small, collision, detector, bits) -> None:
     machine, world = start(small.guard(detector=detector), collision)

@@ -71,7 +71,10 @@ def track(text: str, world, frames: int, dof: int, dialect: Dialect | None = Non
         state = out.get(("integer", guard.INTEGERS["state"]), 0)
         if out.get(("integer", guard.INTEGERS["frame"]), 0) != told:
             told = out["integer", guard.INTEGERS["frame"]]
-            numbers = [[out["float", guard.FLOATS[x] + k] for k in range(dof)] for x in ("residual", "score", "limit")]
+            numbers = [
+                [out["float", guard.FLOATS[x] + k] for k in range(dof)]
+                for x in ("residual", "score", "limit")
+            ]
             rows.append((frame, state, *numbers))
         if machine.finished or state > 2:
             break
@@ -180,7 +183,12 @@ def real(observer, recording, seconds: float | None = None) -> Rows:
 def then_rest(observer, rows: Rows, at: int, rest: int = 4000) -> Rows:
     """Cut a motion and let it end with a rest in which the model is right."""
     end = after_rest(observer, rows.q[at : at + 1], *(np.zeros((1, 6)),) * 3, rest=rest)
-    return Rows(*(np.concatenate([getattr(rows, x)[:at], getattr(end, x)]) for x in ("q", "qd", "current", "target_qd")))
+    return Rows(
+        *(
+            np.concatenate([getattr(rows, x)[:at], getattr(end, x)])
+            for x in ("q", "qd", "current", "target_qd")
+        )
+    )
 
 
 class Arm(RecordedWorld):
@@ -190,7 +198,9 @@ class Arm(RecordedWorld):
     """
 
     def __init__(self, rows: Rows, settle: int | None = 80, **options) -> None:
-        super().__init__(rows.q.copy(), rows.qd.copy(), rows.current.copy(), rtde={"target_qd": rows.target_qd}, **options)
+        super().__init__(
+            rows.q.copy(), rows.qd.copy(), rows.current.copy(), rtde={"target_qd": rows.target_qd}, **options
+        )
         self.log: list[tuple[int, str]] = []
         self.settle = settle
         self.stopped: int | None = None

@@ -18,9 +18,7 @@ from residuum.virtual.server import Controller, Ports, Server
 
 FREE = Ports(0, 0, 0, 0, 0)
 FIXED = (30004, 29999, 30001, 30002, 30003)
-SERVE = (
-    "import sys; from residuum.cli.run import run; from residuum.cli.serve import serve; run(serve, 'residuum serve')"
-)
+SERVE = "import sys; from residuum.cli.run import run; from residuum.cli.serve import serve; run(serve, 'residuum serve')"
 
 
 class Robot:
@@ -73,11 +71,22 @@ def taken(port: int) -> bool:
     return False
 
 
+def _acquire(lock, seconds: float) -> None:
+    end = time.monotonic() + seconds
+    while True:
+        try:
+            return fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            if time.monotonic() > end:
+                pytest.skip(f"other tests held the fixed ports for {seconds:.0f} s")
+            time.sleep(0.05)
+
+
 @contextlib.contextmanager
 def fixed_ports():
     """The ports that ur_rtde insists on, for one test at a time on this computer."""
     with (Path(tempfile.gettempdir()) / "residuum_controller_ports.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+        _acquire(lock, 120.0)
         if busy := [port for port in FIXED if taken(port)]:
             pytest.skip(f"ports {busy} are taken; ur_rtde uses no others")
         yield
