@@ -12,8 +12,12 @@ VERBS = {
     "audit": "Say what is wrong with recordings.",
     "check": "Check a URScript program.",
     "fit": "Fit a baseline model to recordings.",
+    "monitor": "The observer's view of a running robot.",
     "observe": "Residual and external torque along a recording.",
     "predict": "Motor currents along a recording from its motion alone.",
+    "record": "Record a robot's own stream.",
+    "serve": "A virtual robot behind a controller's sockets.",
+    "upload": "Send a program to the controller.",
 }
 
 

@@ -20,7 +20,8 @@ ALLOWED = {
     "urscript": set(),
     "identify": {"codegen", "recordings", "robots", "symbolic", "urscript"},
     "virtual": {"codegen", "recordings", "robots", "urscript"},
-    "cli": {"codegen", "identify", "recordings", "robots", "symbolic", "urscript", "virtual"},
+    "driver": {"identify", "recordings", "robots", "urscript"},
+    "cli": {"codegen", "driver", "identify", "recordings", "robots", "symbolic", "urscript", "virtual"},
     "generated": set(),
     "templates": set(),
 }

@@ -16,7 +16,7 @@ from .command import Command, Position
 from .controller import TICK, Controller, Nominal
 from .drive import ElasticDrive
 from .friction import curves, within
-from .model import Build, build_model, link_frame, turned_inertia
+from .model import Build, RigidBody, build_model, link_frame, turned_inertia
 from .plant import Plant
 from .sensing import Rows, Sensors
 from .surroundings import Obstacle, Surroundings
@@ -57,6 +57,7 @@ class Simulator:
         self._substeps = plant.substeps or (8 if soft else 2)
         self._dt = TICK / self._substeps
         self.time, self._cycle = 0.0, 0
+        self._declared: RigidBody | None = None
         self._offset = [0.0] * n
         for encoder in plant.encoder_offset:
             self._offset[encoder.joint - 1] += encoder.offset
@@ -104,6 +105,11 @@ class Simulator:
     def clear_obstacles(self) -> None:
         """Take everything out of the way."""
         self._around.clear()
+
+    def declare(self, load: RigidBody | None) -> None:
+        """Tell the controller what hangs at the flange (frame of the last link); nothing is attached."""
+        self._declared = load
+        self._nominal.load(self.robot, self._believed())
 
     def where(self, link: int, point: Vector3 = (0.0, 0.0, 0.0)) -> Array:
         """Return a point (3,) of a link (its DH frame, m) in the base frame (m)."""
@@ -256,6 +262,8 @@ class Simulator:
 
     def _believed(self) -> Build:
         payload = self.plant.payload
+        if self._declared is not None:
+            return Build(load=self._declared)
         return Build(load=load_body(payload) if payload and payload.declared and self._held else None)
 
     def _arm(self) -> None:
