@@ -768,11 +768,12 @@ def _apply(function, used, size, *arrays, work=0):
         raise ValueError(f"the last axis holds the joints: {DOF} expected, the shape is {shape}")
     flat = [np.broadcast_to(a, shape).reshape(-1, DOF) for a in arrays]
     out = np.empty((size, len(flat[0])))
+    scratch = np.empty((work, min(_BLOCK, len(flat[0]))))
     for start in range(0, out.shape[1], _BLOCK):
         block = slice(start, start + _BLOCK)
         columns = [np.ascontiguousarray(flat[i][block, j]) for i, j in used]
         if work:
-            columns.append(np.empty((work, out[0, block].size)))
+            columns.append(scratch[:, : out[0, block].size])
         for row, value in zip(out, function(*columns)):
             row[block] = value
     return out.T.reshape(*shape[:-1], size)
