@@ -58,136 +58,134 @@ def smooth_sign(speed: sp.Expr, width: sp.Expr) -> sp.Expr:
     return speed / (sp.Abs(speed) + width)
 
 
-def _catalogue() -> dict[str, Term]:
-    s = sp.Symbol
-    sign = smooth_sign(QD, s("width"))
-    torque, per_speed = "Nm", "Nm s/rad"
-    armstrong = "Armstrong-Helouvry, Dupont, Canudas de Wit 1994"
-    entries = [
-        Term(
-            "coulomb",
-            "coulomb_friction",
-            s("Fc") * sign,
-            {"Fc": Parameter(torque, "Coulomb level"), "width": _WIDTH},
-            armstrong,
-            ("Fc",),
-        ),
-        Term(
-            "viscous",
-            "viscous_friction",
-            s("Fv") * QD,
-            {"Fv": Parameter(per_speed, "viscous coefficient")},
-            armstrong,
-            ("Fv",),
-        ),
-        Term(
-            "cubic",
-            "nonlinear_viscous",
-            s("F3") * QD**3,
-            {"F3": Parameter("Nm s^3/rad^3", "cubic coefficient")},
-            "Gylling 2019, eq. 2.3.1",
-            ("F3",),
-        ),
-        Term(
-            "power",
-            "nonlinear_viscous",
-            s("Fp") * sp.Abs(QD) ** s("n") * sign,
-            {
-                "Fp": Parameter("Nm (s/rad)^n", "coefficient"),
-                "n": Parameter("1", "exponent", 0.65),
-                "width": _WIDTH,
-            },
-            "shape of UR's factory friction sheets",
-            ("Fp",),
-        ),
-        Term(
-            "stribeck",
-            "stribeck",
-            s("Fs") * sp.exp(-((QD / s("vs")) ** 2)) * sign,
-            {
-                "Fs": Parameter(torque, "static minus Coulomb level"),
-                "vs": Parameter("rad/s", "Stribeck speed", 0.1),
-                "width": _WIDTH,
-            },
-            armstrong,
-            ("Fs",),
-        ),
-        Term(
-            "load_dependent",
-            "load_dependent_friction",
-            s("mu") * sp.Abs(LOAD) * sign,
-            {"mu": Parameter("Nm/Nm", "friction per carried torque"), "width": _WIDTH},
-            "Hamon, Gautier, Garrec 2010",
-            ("mu",),
-        ),
-        Term(
-            "asymmetric",
-            "friction_asymmetry",
-            s("Fa") * sp.Abs(sign),
-            {
-                "Fa": Parameter(torque, "half the difference of the levels in both directions"),
-                "width": _WIDTH,
-            },
-            armstrong,
-            ("Fa",),
-        ),
-        Term(
-            "temperature_dependent",
-            "temperature_dependent_friction",
-            (s("kc") * sign + s("kv") * QD) * (TEMPERATURE - s("T0")),
-            {
-                "kc": Parameter("Nm/K", "change of the Coulomb level"),
-                "kv": Parameter("Nm s/(rad K)", "change of the viscous coefficient"),
-                "T0": Parameter("deg C", "temperature of the other terms", 30.0),
-                "width": _WIDTH,
-            },
-            "Bittencourt and Gunnarsson 2012",
-            ("kc", "kv"),
-        ),
-        Term(
-            "position_dependent",
-            "position_dependent_friction",
-            sign * (s("A") * sp.sin(s("n") * Q) + s("B") * sp.cos(s("n") * Q)),
-            {
-                "A": Parameter(torque, "sine part"),
-                "B": Parameter(torque, "cosine part"),
-                "n": Parameter("1/turn", "periods a joint turn", 1.0),
-                "width": _WIDTH,
-            },
-            armstrong,
-            ("A", "B"),
-        ),
-        Term(
-            "spring",
-            "cable_spring",
-            s("k") * (Q - s("q0")),
-            {"k": Parameter("Nm/rad", "stiffness"), "q0": Parameter("rad", "position without torque", 0.0)},
-            "linear cable or hose",
-            ("k",),
-        ),
-        Term(
-            "ripple",
-            "torque_ripple",
-            s("A") * sp.cos(s("n") * Q) + s("B") * sp.sin(s("n") * Q),
-            {
-                "A": Parameter(torque, "cosine part"),
-                "B": Parameter(torque, "sine part"),
-                "n": Parameter("1/turn", "periods a joint turn: order times gear ratio", 101.0),
-            },
-            "Holtz and Springob 1996; wave generators turn with the motor",
-            ("A", "B"),
-        ),
-        Term(
-            "offset",
-            "current_offset",
-            s("c"),
-            {"c": Parameter(torque, "constant torque, at rest too")},
-            "zero error of the current sensor",
-            ("c",),
-        ),
-    ]
-    return {term.name: term for term in entries}
+_s = sp.Symbol
+_sign = smooth_sign(QD, _s("width"))
+_TORQUE, _PER_SPEED = "Nm", "Nm s/rad"
+_ARMSTRONG = "Armstrong-Helouvry, Dupont, Canudas de Wit 1994"
 
+_TERMS = [
+    Term(
+        "coulomb",
+        "coulomb_friction",
+        _s("Fc") * _sign,
+        {"Fc": Parameter(_TORQUE, "Coulomb level"), "width": _WIDTH},
+        _ARMSTRONG,
+        ("Fc",),
+    ),
+    Term(
+        "viscous",
+        "viscous_friction",
+        _s("Fv") * QD,
+        {"Fv": Parameter(_PER_SPEED, "viscous coefficient")},
+        _ARMSTRONG,
+        ("Fv",),
+    ),
+    Term(
+        "cubic",
+        "nonlinear_viscous",
+        _s("F3") * QD**3,
+        {"F3": Parameter("Nm s^3/rad^3", "cubic coefficient")},
+        "Gylling 2019, eq. 2.3.1",
+        ("F3",),
+    ),
+    Term(
+        "power",
+        "nonlinear_viscous",
+        _s("Fp") * sp.Abs(QD) ** _s("n") * _sign,
+        {
+            "Fp": Parameter("Nm (s/rad)^n", "coefficient"),
+            "n": Parameter("1", "exponent", 0.65),
+            "width": _WIDTH,
+        },
+        "shape of UR's factory friction sheets",
+        ("Fp",),
+    ),
+    Term(
+        "stribeck",
+        "stribeck",
+        _s("Fs") * sp.exp(-((QD / _s("vs")) ** 2)) * _sign,
+        {
+            "Fs": Parameter(_TORQUE, "static minus Coulomb level"),
+            "vs": Parameter("rad/s", "Stribeck speed", 0.1),
+            "width": _WIDTH,
+        },
+        _ARMSTRONG,
+        ("Fs",),
+    ),
+    Term(
+        "load_dependent",
+        "load_dependent_friction",
+        _s("mu") * sp.Abs(LOAD) * _sign,
+        {"mu": Parameter("Nm/Nm", "friction per carried torque"), "width": _WIDTH},
+        "Hamon, Gautier, Garrec 2010",
+        ("mu",),
+    ),
+    Term(
+        "asymmetric",
+        "friction_asymmetry",
+        _s("Fa") * sp.Abs(_sign),
+        {
+            "Fa": Parameter(_TORQUE, "half the difference of the levels in both directions"),
+            "width": _WIDTH,
+        },
+        _ARMSTRONG,
+        ("Fa",),
+    ),
+    Term(
+        "temperature_dependent",
+        "temperature_dependent_friction",
+        (_s("kc") * _sign + _s("kv") * QD) * (TEMPERATURE - _s("T0")),
+        {
+            "kc": Parameter("Nm/K", "change of the Coulomb level"),
+            "kv": Parameter("Nm s/(rad K)", "change of the viscous coefficient"),
+            "T0": Parameter("deg C", "temperature of the other terms", 30.0),
+            "width": _WIDTH,
+        },
+        "Bittencourt and Gunnarsson 2012",
+        ("kc", "kv"),
+    ),
+    Term(
+        "position_dependent",
+        "position_dependent_friction",
+        _sign * (_s("A") * sp.sin(_s("n") * Q) + _s("B") * sp.cos(_s("n") * Q)),
+        {
+            "A": Parameter(_TORQUE, "sine part"),
+            "B": Parameter(_TORQUE, "cosine part"),
+            "n": Parameter("1/turn", "periods a joint turn", 1.0),
+            "width": _WIDTH,
+        },
+        _ARMSTRONG,
+        ("A", "B"),
+    ),
+    Term(
+        "spring",
+        "cable_spring",
+        _s("k") * (Q - _s("q0")),
+        {"k": Parameter("Nm/rad", "stiffness"), "q0": Parameter("rad", "position without torque", 0.0)},
+        "linear cable or hose",
+        ("k",),
+    ),
+    Term(
+        "ripple",
+        "torque_ripple",
+        _s("A") * sp.cos(_s("n") * Q) + _s("B") * sp.sin(_s("n") * Q),
+        {
+            "A": Parameter(_TORQUE, "cosine part"),
+            "B": Parameter(_TORQUE, "sine part"),
+            "n": Parameter("1/turn", "periods a joint turn: order times gear ratio", 101.0),
+        },
+        "Holtz and Springob 1996; wave generators turn with the motor",
+        ("A", "B"),
+    ),
+    Term(
+        "offset",
+        "current_offset",
+        _s("c"),
+        {"c": Parameter(_TORQUE, "constant torque, at rest too")},
+        "zero error of the current sensor",
+        ("c",),
+    ),
+]
 
 #: Every term by name.
-CATALOGUE: Mapping[str, Term] = _catalogue()
+CATALOGUE: Mapping[str, Term] = {term.name: term for term in _TERMS}
