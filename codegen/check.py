@@ -1,16 +1,20 @@
 """gen-model's check of its own output: the NumPy text against SymPy's energies, evaluated exactly."""
 
 from collections.abc import Sequence
+from types import ModuleType
 
 import mpmath as mp
 import numpy as np
+import sympy as sp
 from numpy.typing import NDArray
 
 from ..symbolic.base_parameters import base_energies
+from ..symbolic.chain import Chain
 from ..symbolic.nominal import robot_arm
 from ..symbolic.reference import Reference, lambdify
-from .functions import SymbolicModel
+from ..symbolic.terms import CATALOGUE, CLOCK, INPUTS
 from .load import load_text
+from .symbolic_model import JointTerm, SymbolicModel
 
 #: Agreement that double precision must reach, relative to the largest element of a result.
 TOLERANCE = 1e-11
@@ -34,7 +38,37 @@ def worst_disagreement(model: SymbolicModel, observer_text: str, states: int = 2
         )
         friction = _terms(model, q, qd, load, hot)
         worst = max(worst, _relative(module.friction(q, qd, load, hot), friction))
-    return worst
+    return max(worst, _memory(model, module)) if model.memory else worst
+
+
+def _memory(model: SymbolicModel, module: ModuleType, samples: int = 6) -> float:
+    """Compare the terms that remember along a few samples of random motion, updated one by one."""
+    random = np.random.default_rng(1)
+    shape = (samples, model.model.dof)
+    q, qd, load = (random.uniform(-x, x, shape) for x in (np.pi, 2.0, 50.0))
+    hot, dt = random.uniform(20, 60, shape), random.uniform(0.002, 0.02, samples)
+    steady = module.friction(q, qd, load, hot)
+    found = module.friction(q, qd, load, hot, dt=dt, carried=load) - steady
+    exact = np.zeros(shape, dtype=object)
+    for term in model.memory:
+        j = term.data.joint - 1
+        columns = np.stack([q[:, j], qd[:, j], load[:, j], hot[:, j], dt, np.arange(samples) > 0], axis=1)
+        exact[:, j] += _along(term, columns)
+    return max(_relative(a, b.tolist()) for a, b in zip(found, exact, strict=True))
+
+
+def _along(term: JointTerm, columns: NDArray[np.float64]) -> list[mp.mpf]:
+    """Return a term's torque at each sample; columns (T, 6): `INPUTS` and `CLOCK`."""
+    entry = CATALOGUE[term.data.name]
+    symbols = [*INPUTS, *CLOCK, *(sp.Symbol(n) for n in (*entry.parameters, *entry.state))]
+    parameters = [mp.mpf(float(term.values[n])) for n in entry.parameters]
+    torque, *updates = (lambdify(symbols, x, Chain()) for x in (entry.expression, *entry.state.values()))
+    state, found = [mp.mpf(0) for _ in updates], []
+    for row in columns:
+        numbers = [*(mp.mpf(float(x)) for x in row), *parameters]
+        state = [update(*numbers, *state) for update in updates]
+        found.append(torque(*numbers, *state))
+    return found
 
 
 def _rigid_body(
@@ -64,9 +98,7 @@ def _terms(model: SymbolicModel, *columns: NDArray[np.float64]) -> list[mp.mpf]:
         }
         values = {k: model.values.get(k, inputs.get(k.name)) for k in expression.free_symbols}
         numbers = {k: mp.mpf(float(v)) for k, v in values.items() if v is not None}
-        result.append(
-            lambdify(list(numbers), expression, model.dynamics.chain.__class__())(*numbers.values())
-        )
+        result.append(lambdify(list(numbers), expression, Chain())(*numbers.values()))
     return result
 
 

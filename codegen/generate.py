@@ -8,14 +8,16 @@ import tomli_w
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from ..robots.model import Model
-from .functions import SymbolicModel, listings, symbolic_model
+from .functions import listings
 from .guard import guard_scripts
 from .inplace import in_place
 from .languages import NUMPY, URSCRIPT, C, body
 from .listing import Listing
+from .memory import RECALL, STEP, for_numpy, maps, states
 from .options import Options
 from .page import UNFITTED_THRESHOLD, page_context
 from .printed import CFunction, NumpyFunction
+from .symbolic_model import SymbolicModel, symbolic_model
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,7 @@ def render(
     environment = _environment()
     shared = _shared_context(symbolic)
     scripts = guard_scripts(environment, shared, symbolic, found, options)
-    in_c = [CFunction(n, body(x, C), x, model.name.upper()) for n, x in found.items()]
+    in_c = [CFunction(n, body(x, C), x, model.name.upper()) for n, x in found.items() if not for_numpy(n)]
     files = {
         "__init__.py": f'"""{model.title}, {model.dof} joints: written by gen-model; do not edit."""\n',
         "observer.py": _numpy(environment, shared, symbolic, found),
@@ -99,12 +101,19 @@ def _numpy(
     symbolic: SymbolicModel,
     found: Mapping[str, Listing],
 ) -> str:
-    functions = {n: NumpyFunction(n, body(x, NUMPY), x) for n, x in found.items() if n != "momentum_and_beta"}
+    remembers = bool(symbolic.memory)
+    functions = {
+        n: NumpyFunction(n, body(x, NUMPY), x, remembers)
+        for n, x in found.items()
+        if n not in ("momentum_and_beta", STEP)
+    }
     return environment.get_template("model/observer.py.jinja").render(
         **shared,
         functions=functions.values(),
         core=functions["core"],
         block=in_place(found["core"]),
+        maps=[(functions[m.name], m) for m in maps(symbolic)],
+        recall=functions[RECALL].used if remembers else "",
         term_notes=_term_notes(symbolic),
     )
 
@@ -149,6 +158,7 @@ def _shared_context(symbolic: SymbolicModel) -> dict[str, object]:
         else [UNFITTED_THRESHOLD * j.max_torque for j in model.joint],
         "thresholds_per_speed": list(fitted.per_speed) if fitted and fitted.per_speed else [0.0] * model.dof,
         "reference_temperature": reference,
+        "memory": len(states(symbolic)),
     }
 
 
@@ -157,9 +167,12 @@ def _term_notes(symbolic: SymbolicModel) -> list[tuple[str, str]]:
     if not symbolic.terms:
         return [("Friction", "none in this model; friction() returns zeros")]
     names = ", ".join(dict.fromkeys(t.data.name for t in symbolic.terms))
+    remembering = ", ".join(dict.fromkeys(t.data.name for t in symbolic.memory))
     widths = sorted({t.values["width"] for t in symbolic.terms if "width" in t.values})
     notes = [("Terms", names)]
     if widths:
         text = ", ".join(f"{w:g}" for w in widths)
         notes.append(("Smooth sign", f"v / (|v| + w) with w = {text} rad/s"))
+    if remembering:
+        notes.append(("Memory", f"{remembering}; they depend on the samples before"))
     return notes

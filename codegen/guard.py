@@ -12,10 +12,11 @@ from ..robots.model import Model
 from ..symbolic.terms import TEMPERATURE
 from ..urscript import Functions, RecordedWorld, parse
 from ..urscript.nodes import Assign, walk
-from .functions import SymbolicModel
 from .languages import URSCRIPT, Body, body
 from .listing import Listing
+from .memory import STEP
 from .options import RTDE_VALUE, Options
+from .symbolic_model import SymbolicModel
 
 #: What is generated beside the observers.
 SCRIPTS = ("collision_guard.script", "probe.script", "snapshot.script")
@@ -103,13 +104,14 @@ def guard_scripts(
     Raises InputError where the model's thresholds are no limits.
     """
     model = symbolic.model
-    core = body(found["core"], URSCRIPT)
+    step = found.get(STEP, found["core"])
+    core = body(step, URSCRIPT)
     context: dict[str, object] = {
         **shared,
         **_choices(options),
         **_constants(model),
         "inputs": core.inputs,
-        "arguments": list(found["core"].inputs),
+        "arguments": list(step.inputs),
         "statements": core.statements,
         "outputs": _named_outputs(core),
         "temperature_used": symbolic.uses(TEMPERATURE),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import sympy as sp
 
 from ..symbolic.equations import Dynamics, gravity_vector, mass_matrix
-from ..symbolic.terms import QD
+from ..symbolic.terms import STARTED
 
 #: Beyond this many joints expanded equations stop being readable.
 READABLE_JOINTS = 3
@@ -74,7 +74,9 @@ _NAMES = (
     (re.compile(r"^rho$"), r"\\rho"),
     (re.compile(r"^load(\d+)$"), r"\\tau_{\\mathrm{load},\1}"),
     (re.compile(r"^temperature(\d+)$"), r"\\vartheta_{\1}"),
-    (re.compile(r"^[a-z_]+\d+_([A-Za-z]+)(\d*)$"), r"\\mathrm{\1}_{\2}"),
+    (re.compile(r"^dt$"), r"\\Delta t"),
+    (re.compile(r"^tau0$"), r"\\tau_0"),
+    (re.compile(r"^[a-z_]+\d+_(?:\d+_)?([A-Za-z]+)(\d*)$"), r"\\mathrm{\1}_{\2}"),
     (re.compile(r"^([a-zA-Z]+?)([xyz]?)(\d+)_bar$"), r"\\bar{\1}_{\2\3}"),
     (re.compile(r"^([A-Z]{2})(\d+)$"), r"\\mathit{\1}_{\2}"),
     (re.compile(r"^([wvgrSP]b?t?)([xyz])(\d+)$"), r"\1_{\2,\3}"),
@@ -97,13 +99,26 @@ def latex(expression: sp.Expr) -> str:
     return str(sp.latex(expression, symbol_names=dict(names)))
 
 
-def term_latex(expression: sp.Expr, joint: int) -> str:
+def term_latex(expression: sp.Expr) -> str:
     """Return a term on a joint with the smooth sign written as sgn."""
-    speed = sp.Symbol(f"{QD.name}{joint}")
-    sign = sp.Symbol(f"SGN{joint}")
+    names = {}
     width = [x for x in expression.free_symbols if x.name.endswith("_width")]
-    if width:
+    for speed in expression.free_symbols if width else ():
+        sign = sp.Symbol(f"SGN_{speed.name}")
         expression = expression.subs(speed / (sp.Abs(speed) + width[0]), sign)
-    names = {x: symbol_latex(x.name) for x in expression.free_symbols}
-    names[sign] = rf"\operatorname{{sgn}}(\dot q_{{{joint}}})"
+        names[sign] = rf"\operatorname{{sgn}}({symbol_latex(speed.name)})"
+    names |= {x: symbol_latex(x.name) for x in expression.free_symbols if x not in names}
     return str(sp.latex(expression, symbol_names=names))
+
+
+def update_latex(updates: Mapping[sp.Symbol, sp.Expr]) -> list[str]:
+    """Return what becomes of each state in a sample that is not the first, with an arrow.
+
+    A state before it in the list is written with a plus: as it is after the sample.
+    """
+    texts, after = list[str](), dict[sp.Expr, sp.Symbol]()
+    for state, update in updates.items():
+        settled = update.subs(after).subs(STARTED, 1)
+        texts.append(rf"{symbol_latex(state.name)} \leftarrow {term_latex(settled)}")
+        after[update] = sp.Symbol(f"{symbol_latex(state.name)}^+")
+    return texts

@@ -123,6 +123,13 @@ def from_casadi(name: str, inputs: Mapping[str, ca.SX], outputs: Mapping[str, ca
     return builder.listing(name, {label: x.shape[0] for label, x in inputs.items()}, shaped)
 
 
+def shortest(name: str, inputs: Mapping[str, ca.SX], outputs: Mapping[str, ca.SX]) -> Listing:
+    """List a function, with and without CasADi's own search for equal subexpressions; keep the shorter."""
+    plain = from_casadi(name, inputs, outputs)
+    shared = from_casadi(name, inputs, dict(zip(outputs, ca.cse([*outputs.values()]), strict=True)))
+    return min((plain, shared), key=lambda x: x.operations)
+
+
 def _translate(builder: "Builder", op: int, args: Sequence[int]) -> int:
     if op == ca.OP_SQ:
         return builder.add(Instruction("mul", (args[0], args[0])))

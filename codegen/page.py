@@ -3,16 +3,21 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+import sympy as sp
 
 from ..robots.model import Model
 from ..symbolic.base_parameters import base_parameters
 from ..symbolic.nominal import robot_arm
 from ..symbolic.terms import CATALOGUE
-from .functions import JointTerm, SymbolicModel, operation_count
+from .functions import operation_count
 from .guard import guard_size
-from .latex import equations, latex, symbol_latex, term_latex
+from .latex import equations, latex, symbol_latex, term_latex, update_latex
 from .listing import Listing
+from .memory import STEP, for_numpy
+from .symbolic_model import JointTerm, SymbolicModel
 
+#: What a row of the operations' table is called, where the function's name does not say it.
+_COUNTED = {STEP: "core with the terms that remember"}
 #: Share of the rated torque that stands in for a threshold until one is fitted.
 UNFITTED_THRESHOLD = 0.2
 
@@ -55,10 +60,12 @@ def _term_row(term: JointTerm) -> dict[str, object]:
         + (f" {p.unit}" if p.unit != "1" else "")
         for n, p in entry.parameters.items()
     ]
+    updates = {term.states[n]: sp.sympify(update).xreplace(term.renamed) for n, update in entry.state.items()}
+    texts = [term_latex(term.expression), *update_latex(updates)]
     return {
         "joint": term.data.joint,
         "name": entry.name,
-        "latex": term_latex(term.expression, term.data.joint).replace("|", r"\vert "),
+        "latex": r",\ ".join(texts).replace("|", r"\vert "),
         "parameters": "; ".join(shown),
         "source": term.data.source or entry.source,
     }
@@ -89,7 +96,9 @@ def _counts(symbolic: SymbolicModel, found: Mapping[str, Listing]) -> Sequence[t
     """Count this model and the cases that the project's tables compare."""
     rows = [("momentum and beta, as generated", found["momentum_and_beta"].operations)]
     rows += [
-        (name.replace("_", " "), found[name].operations) for name in found if name != "momentum_and_beta"
+        (_COUNTED.get(name, name.replace("_", " ")), found[name].operations)
+        for name in found
+        if name != "momentum_and_beta" and not for_numpy(name)
     ]
     if symbolic.model.variant == "full":
         rows += [

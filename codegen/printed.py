@@ -6,6 +6,7 @@ from .languages import Body
 from .listing import Listing
 
 _SUMMARY = {
+    "step": "A sample: momentum (Nm s), beta (Nm), friction (Nm) and the states after it.",
     "core": "Momentum (Nm s), beta (Nm) and friction (Nm) in one go: what the observer needs.",
     "momentum_and_beta": "Momentum (Nm s) and beta (Nm).",
     "momentum": "Momentum p = M(q) qd, Nm s.",
@@ -16,6 +17,12 @@ _SUMMARY = {
     "friction": "Torque of the friction and drive terms, Nm; load: carried torque, Nm; temperature in deg C.",
     "energy": "Kinetic and potential energy, J.",
 }
+_MEMORY = """    dt: seconds from the sample before to each sample, a number or (T,). With it the axis before
+    the last is time, and the terms that remember are updated along it from a start without memory. Without
+    it they are those of a motion that goes on as it is: nothing.
+    carried: what they take as the torque that the joints carry, Nm; by default the momentum's change
+    less beta.
+    """
 _PUBLIC = ("momentum", "beta", "mass_matrix", "gravity", "inverse_dynamics", "friction", "energy")
 
 
@@ -29,8 +36,8 @@ class Function:
 
     @property
     def summary(self) -> str:
-        """One line on what it returns."""
-        return _SUMMARY[self.name]
+        """One line on what it returns; nothing for what is internal to NumPy."""
+        return _SUMMARY.get(self.name, "")
 
     @property
     def public(self) -> str:
@@ -50,7 +57,9 @@ class Function:
 
 @dataclass(frozen=True)
 class NumpyFunction(Function):
-    """What the NumPy template needs on top."""
+    """What the NumPy template needs on top. remembers: whether the model has terms with state."""
+
+    remembers: bool = False
 
     @property
     def input_names(self) -> list[str]:
@@ -71,7 +80,13 @@ class NumpyFunction(Function):
     def public_arguments(self) -> list[str]:
         """Arguments after q, with defaults."""
         defaults = {"load": "load=None", "temperature": "temperature=None"}
-        return [defaults.get(x, x) for x in self.input_names if x != "q"]
+        found = [defaults.get(x, x) for x in self.input_names if x != "q"]
+        return [*found, "dt=None", "carried=None"] if self.along_time else found
+
+    @property
+    def along_time(self) -> bool:
+        """Whether it can be evaluated along time, with terms that remember."""
+        return self.remembers and self.name == "friction"
 
     @property
     def split(self) -> str:
@@ -82,7 +97,8 @@ class NumpyFunction(Function):
     def doc(self) -> str:
         """Docstring."""
         shape = "(..., N, N)" if self.matrix else "each (...)" if self.split else "(..., N)"
-        return f"{self.summary} Returns {shape}."
+        text = f"{self.summary} Returns {shape}."
+        return f"{text}\n\n{_MEMORY}" if self.along_time else text
 
     @property
     def defaults(self) -> list[str]:
@@ -104,7 +120,8 @@ class CFunction(Function):
     @property
     def c_parameters(self) -> list[str]:
         """Parameters: inputs, then results."""
-        inputs = [f"const double {x}[{self.upper}_DOF]" for x in self.listing.inputs]
+        sizes = {"state": f"{self.upper}_STATES", "clock": "2"}
+        inputs = [f"const double {x}[{sizes.get(x, f'{self.upper}_DOF')}]" for x in self.listing.inputs]
         results = [f"double {x}[{len(indices)}]" for x, (_, indices) in self.listing.outputs.items()]
         return inputs + results
 

@@ -15,13 +15,13 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
+from ..errors import InputError
 from ..symbolic.arm import Arm
 from ..symbolic.base_parameters import base_energies, base_parameters
 from ..symbolic.equations import dynamics
 from ..symbolic.terms import CATALOGUE, INPUTS, LOAD, QD, TEMPERATURE, Q
-from .functions import shortest
 from .languages import NUMPY, body
-from .listing import Listing
+from .listing import Listing, shortest
 from .load import load_text
 from .reduce import convert, convert_chain, numbers, symbols
 
@@ -123,8 +123,13 @@ def regressor(arm: Arm, terms: Sequence[TermColumn] = ()) -> Regressor:
 
 
 def linear_columns(term: str, joint: int, values: Mapping[str, float]) -> list[TermColumn]:
-    """Return a column for each linear parameter of a term; nonlinear ones from `values`, else by default."""
+    """Return a column for each linear parameter of a term; nonlinear ones from `values`, else by default.
+
+    Raises InputError for a term with state: its columns are not those of single samples (see columns.py).
+    """
     entry = CATALOGUE[term]
+    if entry.state:
+        raise InputError(f"--term {term}: remembers the samples before; `residuum explain` fits it, not fit")
     fixed = {
         n: p.default
         for n, p in entry.parameters.items()

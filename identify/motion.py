@@ -36,7 +36,12 @@ def required_torque(motion: Recording, observer: ModuleType, cutoff: float = 10.
         for rows, samples in batches(own, own, kernel):
             slope = filtering.weights(own[samples], own[rows], (1,))[0]
             rate_of_change[stretch][rows] = slope @ momentum[stretch][samples]
-    found: Array = rate_of_change - observer.beta(q, qd) + observer.friction(q, qd, temperature=temperature)
+    rigid: Array = rate_of_change - observer.beta(q, qd)
+    along = {}
+    if hasattr(observer, "STATES"):
+        # Terms that remember go along time, gaps included, and carry what the rigid body needs.
+        along = {"dt": np.diff(time, prepend=time[0] - 1 / rate), "carried": rigid}
+    found: Array = rigid + observer.friction(q, qd, temperature=temperature, **along)
     return found
 
 
