@@ -50,6 +50,10 @@ class Stages:
         self._progress.update(self._task, description=stage, advance=int(self._begun), refresh=True)
         self._begun = True
 
+    def rename(self, stage: str) -> None:
+        """Give the stage that runs another name, such as one with a count."""
+        self._progress.update(self._task, description=stage)
+
 
 @contextmanager
 def stages(total: int) -> Iterator[Stages]:

@@ -14,6 +14,7 @@ RECORDINGS = Path(__file__).resolve().parents[2] / "shared" / "recordings"
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--update", action="store_true", help="write the golden files anew instead of comparing")
+    parser.addoption("--robot-host", metavar="ADDRESS", help="a robot or URSim for the tests that only read")
 
 
 @cache
