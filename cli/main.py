@@ -11,12 +11,15 @@ from .run import run
 VERBS = {
     "audit": "Say what is wrong with recordings.",
     "check": "Check a URScript program.",
+    "collide": "Collision experiments: the thesis' campaign, and beyond.",
+    "explain": "What physics is missing, where, and the proof.",
     "fit": "Fit a baseline model to recordings.",
     "monitor": "The observer's view of a running robot.",
     "observe": "Residual and external torque along a recording.",
     "predict": "Motor currents along a recording from its motion alone.",
     "record": "Record a robot's own stream.",
     "serve": "A virtual robot behind a controller's sockets.",
+    "trial": "Concealed cases, answered without their labels, and the score.",
     "upload": "Send a program to the controller.",
 }
 

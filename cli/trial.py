@@ -75,6 +75,7 @@ def explain_case(files: "CaseFiles") -> dict[str, Any]:
         robot=robot,
         robot_hash=digest,
         dof=len(robot.joint),
+        propose=False,
     )
     return dict(explain(task).findings)
 

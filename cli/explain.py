@@ -1,0 +1,79 @@
+"""`residuum explain`: where recordings and model differ, what physics is missing, and the proof."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from ..errors import InputError
+from .files import write_tree
+from .run import stages
+
+if TYPE_CHECKING:
+    from ..mismatch import Explanation
+
+
+@click.command(epilog="Example: residuum explain run*.csv --reference healthy*.csv --robot ur5e --out answer")
+@click.argument("recordings", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="REC...")
+@click.option(
+    "--reference",
+    "references",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    help="A recording of the healthy robot; repeatable, or several after one --reference.",
+)
+@click.option("--robot", help="ur3e, ur5e, ur10e, ur16e, or a robot FILE.toml.  [default: ur5e]")
+@click.option("--model", type=click.Path(path_type=Path), help="A model.toml instead of the published robot.")
+@click.option("--dof", type=click.IntRange(1, 6), help="Moving joints; the rest is rigid.  [default: all]")
+@click.option("--out", required=True, type=click.Path(path_type=Path, file_okay=False), help="Folder.")
+def explain(
+    recordings: tuple[Path, ...],
+    references: tuple[Path, ...],
+    robot: str | None,
+    model: Path | None,
+    dof: int | None,
+    out: Path,
+) -> None:
+    """Say what physics a model lacks, where, and prove it on data that the fit did not see.
+
+    Without --reference: what the published rigid body with Coulomb and viscous friction lacks. With it: what
+    has changed since the reference was recorded. OUT gets findings.json, model.toml and report.html.
+    """
+    from ..codegen.generate import model_toml
+    from ..mismatch import Task
+    from ..mismatch import explain as explained
+    from ..mismatch.report.page import report
+    from ..robots import load_robot
+    from ..robots.model import Model
+    from ..robots.toml import read
+
+    if robot and model:
+        raise InputError("--robot and --model exclude each other: the model says which robot it is")
+    known = read(Model, model)[0] if model else None
+    data, digest = load_robot(known.robot if known else robot or "ur5e")
+    count = known.dof if known else dof or len(data.joint)
+    if known and dof and dof != known.dof:
+        raise InputError(f"--dof {dof}: {model} has {known.dof} joints; leave --dof out")
+    with stages(14) as bar:
+        answer = explained(Task(recordings, references, data, digest, count, known), bar.begin)
+        bar.begin("writing")
+        files = {
+            "findings.json": json.dumps(answer.findings, indent=1, ensure_ascii=False) + "\n",
+            "model.toml": model_toml(answer.model),
+            "report.html": report(answer),
+        }
+        if answer.next_motion is not None and answer.next_motion.script:
+            files |= {"next_motion.script": answer.next_motion.script, "next_motion.csv": _waypoints(answer)}
+        write_tree(out, files)
+    click.echo(answer.sentence)
+    for text in answer.cannot:
+        click.echo(f"not shown by these recordings: {text}")
+    click.echo(f"{out}: {', '.join(files)}")
+
+
+def _waypoints(answer: "Explanation") -> str:
+    motion = answer.next_motion
+    assert motion is not None
+    header = ",".join(f"q_{k}" for k in range(motion.waypoints.shape[1]))
+    return "\n".join([header, *(",".join(f"{x:.6f}" for x in row) for row in motion.waypoints)]) + "\n"

@@ -1,0 +1,164 @@
+"""Hypotheses: what may be missing, each as a few directions in the parameter space."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+from ..symbolic.terms import CATALOGUE
+from .columns import GRIDS, ORDERS, SHORT, TERMS, WIDTH, Column, Space
+from .flexible import names as curve_names
+from .physics import Physics
+from .rows import DELAYS
+from .selection import Directions
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An effect on a joint (0-based; None: on all), as columns (D,) of the candidates' directions.
+
+    values: nonlinear ones; positive: coefficients that physics wants above zero.
+    """
+
+    effect: str
+    joint: int | None
+    columns: tuple[int, ...]
+    values: tuple[tuple[str, float], ...] = ()
+    terms: tuple[str, ...] = ()
+    positive: bool = False
+
+    @property
+    def key(self) -> tuple[str, int | None]:
+        """What it is called, whatever its nonlinear value."""
+        return self.effect, self.joint
+
+
+def own_columns(gear: float) -> tuple[Column, ...]:
+    """Return the terms' columns that every joint has; gear: motor turns a joint turn."""
+    found = [Column("gain", "e")]
+    for term in TERMS:
+        entry = CATALOGUE[term]
+        grid = [(name, values) for (t, name), values in GRIDS.items() if t == term]
+        tried: list[tuple[tuple[str, float], ...]]
+        tried = [((name, v),) for name, values in grid for v in values] or [()]
+        width = (("width", WIDTH),) if "width" in entry.parameters else ()
+        found += [Column(term, p, values + width) for values in tried for p in entry.linear_in]
+    found += [Column("ripple", p, (("n", k * gear),)) for k in ORDERS for p in ("A", "B")]
+    return tuple(found)
+
+
+def curve_columns() -> tuple[Column, ...]:
+    """Return the flexible curve's columns."""
+    return tuple(Column("curve", name, (("piece", float(k)),)) for name, k in curve_names())
+
+
+#: effect -> term; each value of the term's grid is a hypothesis of its own.
+_PLAIN = {
+    "coulomb": "coulomb_friction", "viscous": "viscous_friction", "spring": "cable_spring",
+    "quadratic": "nonlinear_viscous", "cubic": "nonlinear_viscous", "power": "nonlinear_viscous",
+    "tanh": "nonlinear_viscous", "stribeck": "stribeck", "load_dependent": "load_dependent_friction",
+    "temperature_dependent": "temperature_dependent_friction",
+    "position_dependent": "position_dependent_friction",
+    "presliding": "presliding_hysteresis", "lag": "velocity_lag", "ripple": "torque_ripple",
+    "gain": "drive_gain", "asymmetric": "friction_asymmetry", "offset": "current_offset",
+}  # fmt: skip
+#: Whose coefficient cannot be negative when nothing was known of it before.
+_POSITIVE = ("presliding", "lag", "load_dependent", "stribeck")
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """All hypotheses and the directions that their columns number."""
+
+    directions: Directions
+    each: tuple[Candidate, ...]
+    curve: tuple[tuple[int, ...], ...]  # of each joint
+
+
+def candidates(
+    space: Space, physics: Physics, own_std: Array, common_std: dict[str, float], base_std: Array
+) -> Candidates:
+    """Return every hypothesis of the catalogue that is a column or an inertial direction.
+
+    own_std (N, K): prior width of each own column; base_std (B,): of a base parameter.
+    """
+    vectors, std, each = list[Array](), list[float](), list[Candidate]()
+
+    def add(vector: Array, width: float) -> int:
+        vectors.append(vector)
+        std.append(width)
+        return len(vectors) - 1
+
+    unit = np.eye(space.size)
+    for j in range(space.dof):
+        groups: dict[tuple[str, tuple[tuple[str, float], ...]], list[int]] = {}
+        for k, c in enumerate(space.own):
+            if c.term != "curve":
+                at = add(unit[space.own_index(j, k)], own_std[j, k])
+                groups.setdefault((c.term, c.values), []).append(at)
+        for (term, values), columns in groups.items():
+            if dict(values).get("zs", SHORT) < SHORT:
+                continue
+            constant = groups["offset", ()] if term == "spring" else []
+            each.append(Candidate(_PLAIN[term], j, (*columns, *constant), values, (term,), term in _POSITIVE))
+    for kind, effect in (
+        ("encoder", "encoder_offset"),
+        ("elasticity", "joint_elasticity"),
+        ("backlash", "backlash"),
+    ):
+        for j in range(space.dof):
+            at = add(unit[space.common_index(f"{kind}{j + 1}")], common_std[kind])
+            each.append(Candidate(effect, j, (at,), positive=kind != "encoder"))
+    tilt = [add(unit[space.common_index(x)], common_std["tilt"]) for x in ("roll", "pitch")]
+    each.append(Candidate("base_tilt", None, tuple(tilt)))
+    for k, delay in enumerate(DELAYS):
+        both = [
+            add(unit[space.common_index(f"{x}{k + 1}")], common_std["delay"]) for x in ("delay", "reversal")
+        ]
+        each.append(Candidate("time_delay", None, tuple(both), (("around", delay),)))
+    _inertial(space, physics, base_std, add, each)
+    curve = []
+    for j in range(space.dof):
+        own = [k for k, c in enumerate(space.own) if c.term == "curve"]
+        curve.append(tuple(add(unit[space.own_index(j, k)], own_std[j, k]) for k in own))
+    directions = Directions(
+        sparse.csc_matrix(np.stack(vectors, axis=1)), np.array(std), np.zeros(len(std), bool)
+    )
+    return Candidates(directions, tuple(each), tuple(curve))
+
+
+def _inertial(space: Space, physics: Physics, base_std: Array, add, each: list[Candidate]) -> None:  # type: ignore[no-untyped-def]
+    """Directions of a link's ten parameters, of a payload (the last link's) and of each rotor."""
+
+    def lifted(direction: Array) -> Array:
+        vector = np.zeros(space.size)
+        vector[: len(space.base)] = direction
+        return vector
+
+    n = space.dof
+    for link in range(n):
+        own = physics.map.links[:, 10 * link : 10 * link + 10]
+        basis, sizes, _ = np.linalg.svd(own / base_std[:, None], full_matrices=False)
+        # combinations in units of the priors of the base parameters that they change
+        columns = [
+            add(lifted(base_std * basis[:, i]), 3.0)
+            for i in range(len(sizes))
+            if sizes[i] > 1e-6 * max(sizes[0], 1e-12)
+        ]
+        effect = "payload" if link == n - 1 else "link_inertial"
+        if columns:
+            each.append(Candidate(effect, None if effect == "payload" else link, tuple(columns)))
+    for j in range(n):
+        each.append(Candidate("rotor_inertia", j, (add(lifted(physics.map.rotors[:, j]), 5.0),)))
+    every = [add(lifted(np.eye(len(space.base))[:, i] * base_std[i]), 1.0) for i in range(len(space.base))]
+    each.append(Candidate("base_free", None, tuple(every)))
+
+
+def of_key(all_of: Sequence[Candidate], key: tuple[str, int | None]) -> list[Candidate]:
+    """Return the hypotheses of one name on one joint."""
+    return [c for c in all_of if c.key == key]

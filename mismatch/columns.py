@@ -1,0 +1,108 @@
+"""The columns among which missing physics is sought: which terms, at which nonlinear values, on which joint.
+
+Every joint has the same list of own columns (terms of the catalogue, then a flexible curve that is no
+physics); some columns act on all joints at once (a turned base, an encoder's offset, a soft gear).
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..codegen.regressors import Regressor
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column of a joint (or of all): a term's linear parameter at nonlinear values, or a curve's part."""
+
+    term: str
+    parameter: str
+    values: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def value(self) -> Mapping[str, float]:
+        """The nonlinear values by name."""
+        return dict(self.values)
+
+
+#: Nonlinear values that are tried: half a decade apart or less, over the catalogue's plausible range.
+GRIDS: Mapping[tuple[str, str], tuple[float, ...]] = {
+    ("stribeck", "vs"): (0.02, 0.04, 0.08, 0.16, 0.3),
+    ("power", "n"): (0.5,),
+    ("tanh", "vt"): (0.3, 1.0),
+    ("presliding", "zs"): (0.0003, 0.001, 0.003, 0.006, 0.012, 0.03),
+    ("lag", "lag"): (0.003, 0.006, 0.012, 0.02),
+    ("position_dependent", "n"): (1.0, 2.0),
+}
+
+#: Terms with one entry for each value of their grid; order is that of the columns.
+TERMS = (
+    "coulomb", "viscous", "offset", "asymmetric", "spring", "quadratic", "cubic", "power", "tanh", "stribeck",
+    "load_dependent", "temperature_dependent", "position_dependent", "presliding", "lag",
+)  # fmt: skip
+
+#: rad/s; width of the smooth sign: far below the terms' default, whose tail reaches far into slow motion.
+WIDTH = 1e-4
+#: rad; presliding shorter than this is every gear's, and no finding.
+SHORT = 0.002
+#: Ripple: orders per motor turn.
+ORDERS = (1.0, 2.0, 4.0)
+
+
+@dataclass(frozen=True)
+class Space:
+    """Where each parameter stands in the long vector: base, then each joint's own, then common ones.
+
+    dof: N; base: names of B base parameters; own: K columns that every joint has; common: S names of columns
+    that act on all joints. seen[j]: which of the B parameters joint j's rows hold.
+    """
+
+    dof: int
+    base: tuple[str, ...]
+    own: tuple[Column, ...]
+    common: tuple[str, ...]
+    seen: tuple[tuple[int, ...], ...]
+
+    @property
+    def size(self) -> int:
+        """B + N K + S."""
+        return len(self.base) + self.dof * len(self.own) + len(self.common)
+
+    def own_index(self, joint: int, k: int) -> int:
+        """Return where own column k of a joint (0-based) stands."""
+        return len(self.base) + joint * len(self.own) + k
+
+    def common_index(self, name: str) -> int:
+        """Return where a common column stands."""
+        return len(self.base) + self.dof * len(self.own) + self.common.index(name)
+
+    @cached_property
+    def indices(self) -> tuple[Indices, ...]:
+        """Each joint's places in the long vector, in the order of its row matrix."""
+        k, start = len(self.own), len(self.base) + self.dof * len(self.own)
+        shared = np.arange(start, start + len(self.common))
+        return tuple(
+            np.concatenate(
+                [
+                    np.array(self.seen[j], np.int64),
+                    len(self.base) + j * k + np.arange(k),
+                    shared,
+                ]
+            )
+            for j in range(self.dof)
+        )
+
+
+def space_of(regressor: Regressor, own: tuple[Column, ...], common: tuple[str, ...]) -> Space:
+    """Return the space of a regressor's base parameters with these columns."""
+    seen = tuple(
+        tuple(sorted({c for part in ("momentum", "beta") for r, c in regressor.parts[part].places if r == j}))
+        for j in range(regressor.dof)
+    )
+    return Space(regressor.dof, regressor.base, own, common, seen)

@@ -1,0 +1,134 @@
+"""What comes and goes: stretches of time in which a joint's residual leaves its noise, and what they can be.
+
+A push by a person or a thing is bounded in time and reaches several joints at once through the arm's
+geometry; a brake that drags or a loose plug stays on one.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .grams import Scales, regime
+from .physics import Physics, forces
+from .rows import Rows
+
+Array = NDArray[np.float64]
+
+#: Noise levels that the mean over the window leaves before an episode begins; s of the window.
+LEVEL, WINDOW = 6.0, 0.25
+#: s; shorter pauses belong to the episode, shorter episodes are none.
+PAUSE, SHORTEST = 0.6, 0.15
+#: Share of the time that episodes may take: what is always there does not come and go.
+MOST = 0.3
+#: Share of the joints' squared residuals that one force must explain; N.
+FORCE, STRONGEST, WEAKEST = 0.8, 500.0, 3.0
+#: Mean squared residual over noise of a joint that a force reaches.
+LOUD = 10.0
+
+
+@dataclass(frozen=True)
+class Episode:
+    """Rows of a run in which residuals leave their noise. strength (N,): mean squared residual over noise."""
+
+    run: int
+    rows: slice
+    span: tuple[float, float]
+    strength: Array
+    mean: Array  # (N,) mean residual, Nm
+    rms: Array  # (N,)
+    against: Array  # (N,) share of the residual's size that goes with the direction of motion
+
+
+def episodes(
+    runs: Sequence[Rows], which: Sequence[int], residuals: Sequence[Array], scales: Scales, coulomb: Array
+) -> list[Episode]:
+    """Find episodes in residuals (n, N) of some runs; none when they take too much of the time.
+
+    coulomb (N,): Nm; a joint at rest holds that much without anything being there.
+    """
+    sigma = scales.sigma.copy()
+    sigma[:, 2] = np.maximum(sigma[:, 2], coulomb)
+    found, time, taken = list[Episode](), 0, 0
+    for run, left in zip(which, residuals, strict=True):
+        rows = runs[run]
+        kinds = regime(rows)
+        scaled = left / np.take_along_axis(sigma[None], kinds[:, :, None], axis=2)[:, :, 0]
+        width = max(1, round(WINDOW / rows.step))
+        kernel = np.ones(width) / width
+        spread = np.sqrt(np.minimum(scales.inflation, width) / width)
+        loud = np.zeros(len(rows), bool)
+        for j in range(left.shape[1]):
+            mean = np.convolve(np.clip(scaled[:, j], -50, 50) * (kinds[:, j] != 1), kernel, "same")
+            loud |= np.abs(mean) > LEVEL * spread[j] + 0.3
+        for part in _joined(loud, rows.step):
+            found.append(_episode(run, part, rows, left, scaled))
+            taken += part.stop - part.start
+        time += len(rows)
+    return found if taken <= MOST * max(time, 1) else []
+
+
+def _joined(loud: NDArray[np.bool_], step: float) -> list[slice]:
+    edges = np.flatnonzero(np.diff(loud.astype(np.int8), prepend=0, append=0))
+    parts = list[slice]()
+    for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        if parts and (a - parts[-1].stop) * step < PAUSE:
+            parts[-1] = slice(parts[-1].start, b)
+        else:
+            parts.append(slice(a, b))
+    return [p for p in parts if (p.stop - p.start) * step >= SHORTEST]
+
+
+def _episode(run: int, part: slice, rows: Rows, left: Array, scaled: Array) -> Episode:
+    size = np.abs(left[part]).sum(axis=0)
+    along = (left[part] * np.sign(rows.qd[part]) * (rows.moving[part] > 0.5)).sum(axis=0)
+    return Episode(
+        run, part, (float(rows.time[part.start]), float(rows.time[part.stop - 1])),
+        np.mean(scaled[part] ** 2, axis=0), left[part].mean(axis=0),
+        np.sqrt(np.mean(left[part] ** 2, axis=0)), along / np.maximum(size, 1e-9),
+    )  # fmt: skip
+
+
+def involved(found: Sequence[Episode], part: float = 0.08) -> list[int]:
+    """Return the joints (0-based) that hold at least a share of the episodes' strength."""
+    total = np.sum([e.strength - 1 for e in found], axis=0)
+    total = np.maximum(total, 0)
+    return [int(j) for j in np.flatnonzero(total > part * max(total.sum(), 1e-12))]
+
+
+@dataclass(frozen=True)
+class Contact:
+    """One force at a frame's origin that explains all joints: share of their squared residuals; N at most."""
+
+    frame: int
+    share: float
+    force: float
+
+
+def contact(
+    found: Sequence[Episode], runs: Sequence[Rows], left: Mapping[int, Array], physics: Physics, sigma: Array
+) -> Contact | None:
+    """Return the force that explains the episodes, or None where no single force does.
+
+    left: residuals (n, N) by run; sigma (N,) Nm: noise of the joints. A force has three components and the
+    joints are six, so that what is no force leaves most of itself.
+    """
+    if len(involved(found)) < 2 or np.median([np.sum(e.strength > LOUD) for e in found]) < 2:
+        return None
+    best: Contact | None = None
+    for frame in range(3, physics.dof + 1):
+        rest, whole, most = 0.0, 0.0, 0.0
+        for e in found:
+            columns = forces(physics, runs[e.run].q[e.rows], frame) / sigma[:, None]  # (n, N, 3)
+            target = left[e.run][e.rows] / sigma
+            # a weak prior of 1 kN keeps directions that no joint feels at zero
+            gram = np.einsum("tji,tjk->tik", columns, columns) + 1e-6 * np.eye(3)
+            force = np.linalg.solve(gram, np.einsum("tji,tj->ti", columns, target)[:, :, None])[:, :, 0]
+            rest += float(np.sum((target - np.einsum("tji,ti->tj", columns, force)) ** 2))
+            whole += float(np.sum(target**2))
+            most = max(most, float(np.median(np.linalg.norm(force, axis=1))))
+        share = 1 - rest / max(whole, 1e-12)
+        if best is None or share > best.share:
+            best = Contact(frame, share, most)
+    return best if best is not None and best.share > FORCE and WEAKEST < best.force < STRONGEST else None

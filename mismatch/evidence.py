@@ -1,0 +1,155 @@
+"""Everything that naming works on: rows of all recordings, their noise, and the hypotheses."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
+
+from ..recordings import Recording
+from ..robots import Robot
+from ..robots.model import Model
+from .candidates import Candidates, candidates, curve_columns, own_columns
+from .columns import WIDTH, Column, Space, space_of
+from .flexible import ranges
+from .grams import Fold, Scales, equal_scales, folds_of, scales_of, whole
+from .physics import physics_of
+from .rows import Rows, Setup, common_names, make_rows
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """Rows a run, folds, noise, hypotheses. observed: whether a run is not of the reference.
+
+    base_std (B,): wide prior of the base parameters; torque (N,): rms of the measured torque, Nm.
+    """
+
+    setup: Setup
+    runs: tuple[Rows, ...]
+    observed: tuple[bool, ...]
+    scales: Scales
+    folds: tuple[Fold, ...]
+    found: Candidates
+    base_std: Array
+    torque: Array
+    own_std: Array
+    observed_scales: Scales | None = None
+
+    @property
+    def has_reference(self) -> bool:
+        """Whether there are recordings to compare with."""
+        return not all(self.observed)
+
+
+def gather(
+    recordings: Sequence[Recording], observed: Sequence[bool], model: Model, robot: Robot,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Evidence:  # fmt: skip
+    """Make rows, first with a plain model for loads and slopes, then with every hypothesis."""
+    physics = physics_of(model, robot)
+    gains = np.array([j.drive_gain for j in model.joint])
+    gear = float(robot.joint[0].gear)
+    base_std = _base_std(model, physics.regressor.base)
+    plain_own = (Column("coulomb", "Fc", (("width", WIDTH),)), Column("viscous", "Fv"), Column("offset", "c"))
+    none = np.zeros((physics.dof, 2))
+    plain = Setup(physics, space_of(physics.regressor, plain_own, ()), gains, physics.published, none)
+    progress("first fit")
+    first = [make_rows(r, plain) for r in recordings]
+    sides = list(observed)
+    healthy = [r for r, o in zip(first, sides, strict=True) if not o] or first
+    base, friction = plain_fit(healthy, plain.space, physics.published, base_std)
+    q, qd, load, heat = _states(first)
+    own = (*own_columns(gear), *curve_columns())
+    setup = Setup(
+        physics, space_of(physics.regressor, own, common_names(physics.dof)), gains, base, friction,
+        ranges(q, qd, load, heat),
+    )  # fmt: skip
+    progress("columns of every hypothesis")
+    runs = [make_rows(r, setup) for r in recordings]
+    torque = np.sqrt(np.mean(np.concatenate([r.torque for r in runs]) ** 2, axis=0))
+    own_std = 0.2 * _own_std(runs, setup.space, torque)
+    common_std = {"encoder": 0.05, "elasticity": 1e-3, "backlash": 0.01, "tilt": 0.2, "delay": 0.05}
+    found = candidates(setup.space, physics, own_std, common_std, base_std)
+    progress("noise")
+    healthy_rows = [r for r, o in zip(runs, sides, strict=True) if not o] or runs
+    scales = _scales(healthy_rows, setup.space, physics.published, base_std, own_std)
+    folds = folds_of(runs, sides, scales, setup.space)
+    return Evidence(setup, tuple(runs), tuple(sides), scales, tuple(folds), found, base_std, torque, own_std)
+
+
+def _states(runs: Sequence[Rows]) -> tuple[Array, Array, Array, Array]:
+    return tuple(np.concatenate([getattr(r, k) for r in runs]) for k in ("q", "qd", "load", "temperature"))  # type: ignore[return-value]
+
+
+def _base_std(model: Model, names: Sequence[str]) -> Array:
+    from ..identify.rows import Recipe  # noqa: F401
+    from ..identify.solve import PRIOR_FLOOR, PRIOR_SHARE
+
+    values = np.array([model.base[n].value for n in names])
+    kinds = ["moment" if model.base[n].unit == "kg m" else "inertia" for n in names]
+    links = [int(n.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ")) for n in names]
+    std = np.empty(len(names))
+    for k in range(len(names)):
+        alike = [abs(values[j]) for j in range(len(names)) if kinds[j] == kinds[k] and links[j] >= links[k]]
+        std[k] = max(PRIOR_SHARE * abs(values[k]), PRIOR_FLOOR * max(alike), 1e-3)
+    return std
+
+
+def plain_fit(runs: Sequence[Rows], space: Space, mean: Array, base_std: Array) -> tuple[Array, Array]:
+    """Fit base parameters, Coulomb, viscous and offset; return base (B,) and (N, 2) of friction."""
+    scales = equal_scales(space.dof)
+    torque = np.sqrt(np.mean(np.concatenate([r.torque for r in runs]) ** 2, axis=0))
+    std = np.concatenate([base_std, np.repeat(torque, len(space.own))])
+    theta = np.concatenate([mean, np.zeros(space.size - len(mean))])
+    center = theta.copy()
+    for _ in range(2):
+        folds = folds_of(runs, [True] * len(runs), scales, space)
+        gram = np.sum([whole(f.grams, space) for f in folds], axis=0)
+        theta = _ridge(gram, center, std)
+        scales = scales_of(runs, [residual(r, space, theta) for r in runs])
+    b, k = len(space.base), len(space.own)
+    return theta[:b], theta[b:].reshape(space.dof, k)[:, :2]
+
+
+def _ridge(gram: Array, mean: Array, std: Array) -> Array:
+    a = gram[:-1, :-1] * np.outer(std, std) + np.eye(len(std))
+    right = std * (gram[:-1, -1] - gram[:-1, :-1] @ mean)
+    return np.asarray(mean + std * cho_solve(cho_factor(a), right), np.float64)
+
+
+def residual(rows: Rows, space: Space, theta: Array, part: slice = slice(None)) -> Array:
+    """Return torque less columns @ theta (n, N) of some rows."""
+    joints = range(space.dof)
+    left = [rows.torque[part, j] - rows.columns[j][part] @ theta[space.indices[j]] for j in joints]
+    return np.stack(left, axis=1)
+
+
+def _own_std(runs: Sequence[Rows], space: Space, torque: Array) -> Array:
+    """Prior width of each own column: such that it could make half of the joint's torque."""
+    k = len(space.own)
+    std = np.ones((space.dof, k))
+    for j in range(space.dof):
+        start = len(space.seen[j])
+        power = np.mean(
+            [np.mean(r.columns[j][:, start : start + k] ** 2, axis=0) for r in runs if len(r)], axis=0
+        )
+        std[j] = 0.5 * torque[j] / np.maximum(np.sqrt(power), 1e-9)
+        std[j] = np.minimum(std[j], 1e6)
+    return std
+
+
+def _scales(runs: Sequence[Rows], space: Space, published: Array, base_std: Array, own_std: Array) -> Scales:
+    """Noise that even the richest model leaves, in two passes."""
+    mean = np.concatenate([published, np.zeros(space.size - len(published))])
+    common = np.full(len(space.common), 1e-12)
+    std = np.concatenate([base_std, own_std.ravel(), common])
+    scales = equal_scales(space.dof)
+    for _ in range(2):
+        folds = folds_of(runs, [True] * len(runs), scales, space)
+        gram = np.sum([whole(f.grams, space) for f in folds], axis=0)
+        theta = _ridge(gram, mean, std)
+        scales = scales_of(runs, [residual(r, space, theta) for r in runs])
+    return scales

@@ -1,0 +1,161 @@
+"""`explain` from files to answer: read, gather evidence, judge, locate, prove, refine."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..recordings import Recording, read
+from ..recordings.audit import clean
+from ..recordings.report import AuditReport
+from ..robots import Robot
+from ..robots.model import Input, Model
+from ..symbolic.nominal import nominal_model
+from .answer import Parts, bad_data, compose
+from .coverage import cannot_show
+from .episodes import contact, episodes
+from .evidence import Evidence, gather, residual
+from .judging import Judged, judge
+from .naming import reweighed
+from .next_motion import next_motion
+from .proof import prove
+from .refine import plain, refined
+from .refit import observed_runs, parameters
+from .regions import regions
+from .result import Explanation, NextMotion, Source
+from .sharpen import sharpened, without
+from .unknown import unknowns
+
+Array = NDArray[np.float64]
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Task:
+    """What to explain. model: the nominal one instead of the robot's published links.
+
+    propose: look for the motion that would tell apart what these recordings cannot.
+    """
+
+    recordings: tuple[Path, ...]
+    reference: tuple[Path, ...]
+    robot: Robot
+    robot_hash: str
+    dof: int
+    model: Model | None = None
+    propose: bool = True
+
+
+def explain(task: Task, progress: Progress = lambda _: None) -> Explanation:
+    """Say where recordings and model differ, what physics is missing, and prove it.
+
+    Raises InputError for files that cannot be read or that hold fewer joints than asked.
+    """
+    progress("reading and auditing")
+    taken = [_read(p, r) for r, some in ((False, task.recordings), (True, task.reference)) for p in some]
+    sources = tuple(_source(rec, report, ref) for rec, report, ref in taken)
+    nominal = task.model or nominal_model(task.robot, task.robot_hash, task.dof, _locked(taken, task))
+    nominal = nominal.model_copy(update={"inputs": (*nominal.inputs, *_inputs(taken))})
+    refusals = [(rec, report) for rec, report, _ in taken if report.verdict == "refuse"]
+    if refusals:
+        return bad_data(task.robot, nominal, sources, refusals)
+    for rec, _, _ in taken:
+        if rec.joints < nominal.dof:
+            raise InputError(
+                f"{rec.name}: has {rec.joints} joints, the model {nominal.dof}; give --dof {rec.joints}"
+            )
+    recordings = [rec for rec, _, _ in taken]
+    observed = [not ref for _, _, ref in taken]
+    evidence = gather(recordings, observed, nominal, task.robot, progress)
+    lacks = cannot_show(evidence, recordings)
+    if lacks.hopeless:
+        return bad_data(task.robot, nominal, sources, [], lacks.texts)
+    return _explained(task, nominal, evidence, recordings, sources, lacks.texts, progress)
+
+
+def _explained(
+    task: Task, nominal: Model, evidence: Evidence, recordings: Sequence[Recording],
+    sources: tuple[Source, ...], lacks: tuple[str, ...], progress: Progress,
+) -> Explanation:  # fmt: skip
+    judged = judge(evidence, progress)
+    progress("what is left")
+    weighed = reweighed(evidence, judged.model, judged.mean)
+    own = parameters(weighed, judged.model, judged.mean)
+    which = observed_runs(evidence)
+    names = [recordings[r].name for r in which]
+    left = [residual(evidence.runs[r], evidence.setup.space, own) for r in which]
+    found = episodes(evidence.runs, which, left, evidence.scales, evidence.setup.friction[:, 0])
+    force = contact(
+        found,
+        evidence.runs,
+        dict(zip(which, left, strict=True)),
+        evidence.setup.physics,
+        evidence.scales.sigma[:, 0],
+    )
+    strange = unknowns(evidence, weighed, judged, found)
+    progress("sharpening")
+    sharp = sharpened(weighed, judged)
+    progress("proof on left-out blocks")
+    kept = [a for a in judged.accepted if a.is_finding or not evidence.has_reference]
+    baseline = plain(weighed, [a for a in kept if not a.is_finding])[0]
+    proof, before, after = prove(weighed, baseline, plain(weighed, kept)[0], judged.mean)
+    gear = float(task.robot.joint[0].gear)
+    runs = [evidence.runs[r] for r in which]
+    places = regions(runs, names, before.residual, gear)
+    progress("refined model")
+    model = refined(weighed, nominal, task.robot, judged.accepted, {k: s.value for k, s in sharp.items()})
+    parts = Parts(
+        task.robot, nominal, sources, evidence, judged, sharp, found, left, force, strange, proof, before,
+        after, tuple(places), names, lacks, model, _proposal(task, weighed, judged, progress),
+    )  # fmt: skip
+    return compose(parts)
+
+
+def _proposal(task: Task, evidence: Evidence, judged: Judged, progress: Progress) -> NextMotion | None:
+    """Return the motion that parts the first class of names that cannot be told apart."""
+    classes = [k for k, a in enumerate(judged.accepted) if a.alike and a.is_finding]
+    if not classes or not task.propose:
+        return None
+    progress("the next motion")
+    k = classes[0]
+    rivals = [judged.accepted[k].score.candidate, *judged.accepted[k].alike]
+    speeds = np.array([j.max_speed for j in task.robot.joint[: evidence.setup.space.dof]])
+    return next_motion(evidence, without(evidence, judged, k), rivals, speeds)
+
+
+def _read(path: Path, reference: bool) -> tuple[Recording, AuditReport, bool]:
+    recording, report = clean(read(path))
+    lean = replace(
+        recording, others={}, target_q=None, target_qdd=None, target_current=None, target_moment=None,
+        actual_TCP_force=None,
+    )  # fmt: skip
+    return lean, report, reference
+
+
+def _source(recording: Recording, report: AuditReport, reference: bool) -> Source:
+    steps = np.diff(recording.timestamp)
+    rate = 1 / float(np.median(steps)) if len(steps) else 0.0
+    notes = tuple(f.text for f in report.findings)
+    return Source(recording.name, recording.duration, rate, reference, notes)
+
+
+def _inputs(taken: Sequence[tuple[Recording, AuditReport, bool]]) -> tuple[Input, ...]:
+    return tuple(
+        Input(name=rec.name, sha256=rec.source.sha256) for rec, _, _ in taken if rec.source is not None
+    )
+
+
+def _locked(taken: Sequence[tuple[Recording, AuditReport, bool]], task: Task) -> tuple[float, ...]:
+    """Angles (rad) of the joints that are left out: where they stood on the whole."""
+    beyond = len(task.robot.joint) - task.dof
+    wide = [
+        rec.q[:, task.dof : len(task.robot.joint)]
+        for rec, _, _ in taken
+        if rec.joints >= len(task.robot.joint)
+    ]
+    if beyond <= 0:
+        return ()
+    return tuple(float(x) for x in np.median(np.concatenate(wide), axis=0)) if wide else (0.0,) * beyond

@@ -1,0 +1,187 @@
+"""Sums over rows, a fold at a time: everything that naming needs, whatever the recordings' length.
+
+Rows count by what they can tell: errors around reversals are many times those of free motion, and at rest
+friction is anything within its Coulomb level, so each regime has its own scale, and each joint's residual
+its own memory.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .columns import Space
+from .fast import gram, noise
+from .rows import Rows
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+#: s; what is left out together. Residuals of real arms remember 0.6-1 s.
+BLOCK = 10.0
+#: Folds at most: blocks that follow each other are joined.
+FOLDS = 16
+#: Rows of a joint that moves in less than this share of the kernel are rest.
+_MOVES = 0.5
+#: s and rad/s: after a reversal, and when slow, friction is still building up.
+_REVERSAL, _SLOW = 0.3, 0.05
+
+
+@dataclass(frozen=True)
+class Fold:
+    """One fold: weighted Gram matrices of [columns, torque], one a joint. observed: not of the reference."""
+
+    grams: tuple[Array, ...]
+    count: Array  # (N,) weighted rows, for scales
+    observed: bool
+    run: int
+    span: tuple[float, float]  # s
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Noise of each joint by regime, Nm (N, 3: free, reversal, rest), and rows per independent one (N,).
+
+    fast (N,): variance of the fast band's torque times its samples per independent one, Nm^2.
+    """
+
+    sigma: Array
+    inflation: Array
+    fast: Array
+
+
+def regime(rows: Rows) -> Indices:
+    """Return 0 free, 1 near a reversal or slow, 2 at rest, a row and joint (n, N)."""
+    rest = rows.moving < _MOVES
+    slow = (rows.since < _REVERSAL) | (np.abs(rows.qd) < _SLOW)
+    return np.where(rest, 2, np.where(slow, 1, 0)).astype(np.int64)
+
+
+def weights(rows: Rows, scales: Scales) -> Array:
+    """Return the weight of each row and joint (n, N), 1/Nm^2: independent information on the torque."""
+    which = regime(rows)
+    found = np.empty(which.shape)
+    for j in range(which.shape[1]):
+        alike = _alike(which[:, j] == 2, scales.inflation[j])
+        found[:, j] = 1 / (scales.sigma[j][which[:, j]] ** 2 * alike)
+    return found
+
+
+def _alike(rest: NDArray[np.bool_], inflation: float) -> Array:
+    """Rows that tell the same as a row: in motion the memory, at rest the whole rest (static friction)."""
+    found = np.full(len(rest), inflation)
+    edges = np.flatnonzero(np.diff(rest.astype(np.int8), prepend=0, append=0))
+    for a, b in zip(edges[::2], edges[1::2], strict=True):
+        found[a:b] = b - a
+    return found
+
+
+def folds_of(
+    runs: Sequence[Rows], observed: Sequence[bool], scales: Scales, space: Space,
+    observed_scales: Scales | None = None,
+) -> list[Fold]:  # fmt: skip
+    """Cut runs into blocks of equal length, at most about FOLDS a side, and sum each.
+
+    observed_scales: of the observed runs, when they are not those of all.
+    """
+    found, fast = [], _fast_columns(space)
+    for side in (True, False):
+        used = (observed_scales or scales) if side else scales
+        weight = {r: weights(runs[r], used) for r, _ in blocks(runs, observed, side)}
+        for r, part in blocks(runs, observed, side):
+            rows, w = runs[r], weight[r][part]
+            span = float(rows.time[part.start]), float(rows.time[part.stop - 1])
+            grams = tuple(_gram(rows, j, part, w[:, j]) for j in range(space.dof))
+            if rows.fast is not None:
+                for j in range(space.dof):
+                    ix = np.append(fast + len(space.seen[j]), len(space.indices[j]))
+                    grams[j][np.ix_(ix, ix)] += gram(rows.fast, j, span, used.fast[j])
+            found.append(Fold(grams, w.sum(axis=0), side, r, span))
+    return found
+
+
+def blocks(runs: Sequence[Rows], observed: Sequence[bool], side: bool) -> list[tuple[int, slice]]:
+    """Return (run, rows) of each fold of the observed side, or of the reference's."""
+    mine = [r for r, o in enumerate(observed) if o == side and len(runs[r])]
+    length = max(BLOCK, sum(len(runs[r]) * runs[r].step for r in mine) / FOLDS)
+    found = []
+    for r in mine:
+        parts = max(1, round(len(runs[r]) * runs[r].step / length))
+        for index in np.array_split(np.arange(len(runs[r])), parts):
+            found.append((r, slice(int(index[0]), int(index[-1]) + 1)))
+    return found
+
+
+def _fast_columns(space: Space) -> Indices:
+    """Where ripple's columns stand among a joint's own."""
+    return np.array([k for k, c in enumerate(space.own) if c.term == "ripple"], np.int64)
+
+
+def _gram(rows: Rows, j: int, part: slice, weight: Array) -> Array:
+    data = np.column_stack([rows.columns[j][part], rows.torque[part, j]])
+    return np.asarray(data.T @ (weight[:, None] * data), np.float64)
+
+
+def whole(grams: Sequence[Array], space: Space) -> Array:
+    """Return the Gram matrix (P + 1, P + 1) of all joints from those of each."""
+    size = space.size
+    total = np.zeros((size + 1, size + 1))
+    for j, own in enumerate(grams):
+        ix = np.append(space.indices[j], size)
+        total[np.ix_(ix, ix)] += own
+    return total
+
+
+def scales_of(runs: Sequence[Rows], residuals: Sequence[Array]) -> Scales:
+    """Estimate scales and memory from residuals (n, N) of a model rich enough to leave noise."""
+    n = residuals[0].shape[1]
+    sigma, inflation = np.ones((n, 3)), np.ones(n)
+    which = [regime(r) for r in runs]
+    for j in range(n):
+        by = [
+            np.concatenate([e[w[:, j] == k, j] for e, w in zip(residuals, which, strict=True)])
+            for k in range(3)
+        ]
+        known = [_scale(x) for x in by]
+        best = min((s for s in known if s is not None), default=1.0)
+        sigma[j] = [max(s, 0.3 * best) if s is not None else 3 * best for s in known]
+        sigma[j, 1] = max(sigma[j, 1], sigma[j, 0])
+        sigma[j, 2] = max(sigma[j, 2], 3 * sigma[j, 0])
+        inflation[j] = _memory(
+            [e[:, j] / sigma[j][w[:, j]] * (w[:, j] < 2) for e, w in zip(residuals, which, strict=True)]
+        )
+    quick = [r.fast for r in runs if r.fast is not None]
+    fast = [noise(quick, j) if quick else np.inf for j in range(n)]
+    return Scales(sigma, inflation, np.array(fast))
+
+
+def equal_scales(n: int) -> Scales:
+    """Return scales that weigh all rows of n joints alike."""
+    return Scales(np.ones((n, 3)), np.ones(n), np.full(n, np.inf))
+
+
+def _scale(errors: Array) -> float | None:
+    """Rms of what lies within three robust deviations; None from too few rows."""
+    if len(errors) < 20:
+        return None
+    middle = 1.4826 * float(np.median(np.abs(errors)))
+    inside = np.abs(errors) <= 4 * max(middle, 1e-9)
+    return max(float(np.sqrt(np.mean(errors[inside] ** 2))), 1e-6)
+
+
+def _memory(series: Sequence[Array]) -> float:
+    """Rows per independent row: 1 + 2 sum of autocorrelations up to a self-consistent window (Sokal 1989)."""
+    lags = 200
+    products = np.zeros(lags)
+    for x in series:
+        size = 1 << int(np.ceil(np.log2(2 * len(x) + 1)))
+        spectrum = np.abs(np.fft.rfft(np.clip(x, -5, 5), size)) ** 2
+        both = np.fft.irfft(spectrum, size)[: min(lags, len(x))]
+        products[: len(both)] += both
+    if products[0] <= 0:
+        return 1.0
+    sums = 1 + 2 * np.cumsum(products[1:] / products[0])
+    inside = np.arange(1, lags) >= 2.5 * sums
+    window = int(np.argmax(inside)) if inside.any() else lags - 2
+    return max(1.0, float(sums[window]))

@@ -1,0 +1,153 @@
+"""From scores to names: what is accepted, what explains what away, and what cannot be told apart."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .candidates import Candidate
+from .evidence import Evidence
+from .grams import regime
+from .naming import Scored, chosen, nuisance, ranked, tested
+from .selection import Directions
+
+Array = NDArray[np.float64]
+Key = tuple[str, int | None]
+
+#: Nats on left-out data and all data: odds of e^10 against, for a few hundred hypotheses tried.
+EVIDENCE = 10.0
+#: Mean gain of a fold over its standard error; share of folds that improve.
+STEADY, IMPROVED = 2.0, 0.6
+#: A named effect explains at least this share of what its joint's model leaves: less is of no use to anyone.
+SHARE = 0.015
+#: A rival is told apart by this many nats, or by a steady lead.
+APART = 5.0
+#: Findings and failed attempts at most.
+MOST, TRIES = 6, 10
+#: s; current and motion may be less than this apart without anything being wrong: a cycle and a half.
+SYNCHRONOUS = 0.003
+#: What builds up with travel or late is most of the Coulomb level, or it is something else.
+_PART_OF_COULOMB = {"presliding_hysteresis": 0.25, "velocity_lag": 0.25}
+
+
+@dataclass(frozen=True)
+class Accepted:
+    """A hypothesis that stands, the names that do as well, and those that it explains away.
+
+    rivals: (rival, nats behind, steadiness of the lead). share: of what was left unexplained on its joints.
+    """
+
+    @property
+    def names(self) -> list[str]:
+        """Effects that do as well as this one."""
+        return list(dict.fromkeys(c.effect for c in self.alike))
+
+    @property
+    def is_finding(self) -> bool:
+        """Whether it is physics that is missing, and not the imprecision that every baseline has."""
+        c = self.score.candidate
+        small = c.effect == "time_delay" and self.score.size[0] < SYNCHRONOUS
+        return c.effect != "base_free" and not small
+
+    score: Scored
+    alike: tuple[Candidate, ...]
+    rivals: tuple[tuple[Candidate, float, float], ...]
+    share: float
+
+
+@dataclass(frozen=True)
+class Judged:
+    """Findings in the order in which they were found, the last model, and what was tried and refused."""
+
+    accepted: tuple[Accepted, ...]
+    model: Directions
+    mean: Array
+    refused: tuple[tuple[Scored, str], ...]
+
+
+def judge(evidence: Evidence, progress: Callable[[str], None] = lambda _: None) -> Judged:
+    """Add one hypothesis after the other while it passes every test."""
+    model, mean = nuisance(evidence)
+    skip = ("base_free",) if evidence.has_reference else ("coulomb_friction", "viscous_friction")
+    accepted, refused = list[Accepted](), list[tuple[Scored, str]]()
+    barred: set[Key] = set()
+    tries = 0
+    while len(accepted) < MOST and tries < TRIES:
+        progress(f"hypotheses, round {len(accepted) + 1}")
+        order = [s for s in ranked(evidence, model, mean, skip) if s.candidate.key not in barred]
+        if not order or order[0].evidence < EVIDENCE:
+            break
+        best = order[0]
+        barred.add(best.candidate.key)
+        if why := implausible(evidence, best):
+            refused.append((best, why))
+            continue
+        test = tested(evidence, model, mean, best.candidate)
+        part = share_of(evidence, test)
+        why = objection(test, part) or implausible(evidence, test)
+        tries += 1
+        if why:
+            refused.append((test, why))
+            continue
+        alike, rivals = _rivals(best, order[1:12])
+        accepted.append(Accepted(test, alike, rivals, part))
+        model = chosen(model, evidence, best.candidate)
+    return Judged(tuple(accepted), model, mean, tuple(refused))
+
+
+def share_of(evidence: Evidence, test: Scored) -> float:
+    """Return the share of its joints' squared errors that a hypothesis explains, by its evidence."""
+    return float(
+        1 - np.exp(-2 * max(test.evidence, 0.0) / max(effective(evidence, test.candidate.joint), 1.0))
+    )
+
+
+def effective(evidence: Evidence, joint: int | None) -> float:
+    """Return the number of independent rows that a joint (None: one on average) has on the observed side."""
+    found = np.zeros(evidence.setup.space.dof)
+    for rows, seen in zip(evidence.runs, evidence.observed, strict=True):
+        if seen:
+            found += ((regime(rows) < 2) / evidence.scales.inflation).sum(axis=0)
+    return float(found.mean() if joint is None else found[joint])
+
+
+def objection(test: Scored, part: float) -> str:
+    """Return in words why a hypothesis is not believed, or nothing."""
+    if test.evidence < EVIDENCE or test.total < EVIDENCE:
+        return f"evidence {min(test.evidence, test.total):.1f} nats, {EVIDENCE:g} asked"
+    if test.steadiness < STEADY:
+        return f"not steady over the recordings (t = {test.steadiness:.1f})"
+    if test.improved < IMPROVED:
+        return f"improves only {100 * test.improved:.0f} % of the left-out parts"
+    if part < SHARE:
+        return f"explains only {100 * part:.1f} % of what is left"
+    return ""
+
+
+def implausible(evidence: Evidence, test: Scored) -> str:
+    """Return in words why a hypothesis is no physics at the size that it would have, or nothing."""
+    c = test.candidate
+    if c.effect in _PART_OF_COULOMB and c.joint is not None:
+        level = evidence.setup.friction[c.joint, 0]
+        if abs(test.size[0]) < _PART_OF_COULOMB[c.effect] * level:
+            return f"is {100 * abs(test.size[0]) / level:.0f} % of the Coulomb level: too little for it"
+    return ""
+
+
+def _rivals(
+    best: Scored, others: Sequence[Scored]
+) -> tuple[tuple[Candidate, ...], tuple[tuple[Candidate, float, float], ...]]:
+    """Split rivals into those that do as well and those beaten: (rival, nats, steadiness of the lead)."""
+    alike, beaten = list[Candidate](), []
+    for other in others:
+        lead = best.evidence - other.evidence
+        each = best.gain - other.gain
+        steady = float(np.mean(each)) / max(float(np.std(each, ddof=1)) / np.sqrt(len(each)), 1e-12)
+        if other.evidence < 0.2 * best.evidence or other.candidate.effect == best.candidate.effect:
+            continue
+        if lead < APART or (lead < 0.05 * best.evidence and steady < STEADY):
+            alike.append(other.candidate)
+        else:
+            beaten.append((other.candidate, lead, steady))
+    return tuple(alike), tuple(beaten)

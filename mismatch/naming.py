@@ -1,0 +1,151 @@
+"""Naming: forward selection of hypotheses by what they add to recordings that they have not seen.
+
+Every step weighs the rows anew by what the model that stands leaves: scale by regime, and memory. A large
+unknown effect so hides small ones until it is named, and never lends them its own certainty.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+from .candidates import Candidate
+from .columns import SHORT
+from .evidence import Evidence, residual
+from .grams import Scales, folds_of, scales_of
+from .selection import Directions, Sums, eliminate, log_evidence
+
+Array = NDArray[np.float64]
+
+#: Base parameters of the published model may be off by this share of their wide prior before it is a finding.
+TIGHT = 0.03
+#: Around standstill every gear differs from Coulomb's law by a few percent of it, in one shape or another.
+NEAR_REST, EVERY_GEAR = ("stribeck", "presliding", "lag"), 0.03
+#: Of a column's prior width, for columns that only describe the reference's own imperfections.
+SHARES = (0.003, 0.01, 0.03, 0.1)
+
+
+@dataclass(frozen=True)
+class Scored:
+    """A hypothesis at its best nonlinear value. gain (F,): nats that it adds to a left-out fold's likelihood.
+
+    evidence: what it adds on all folds at once; size (k,): its coefficients; std (k,).
+    """
+
+    candidate: Candidate
+    gain: Array
+    evidence: float
+    size: Array
+    std: Array
+
+    @property
+    def total(self) -> float:
+        """Sum over folds."""
+        return float(self.gain.sum())
+
+    @property
+    def steadiness(self) -> float:
+        """Mean gain of a fold over its standard error."""
+        spread = float(np.std(self.gain, ddof=1)) / np.sqrt(len(self.gain))
+        return float(np.mean(self.gain) / max(spread, 1e-12))
+
+    @property
+    def improved(self) -> float:
+        """Share of folds that it improves."""
+        return float(np.mean(np.asarray(self.gain > 0)))
+
+
+def nuisance(evidence: Evidence) -> tuple[Directions, Array]:
+    """Return what is fitted whatever is found, and the prior mean (P,) of all parameters."""
+    space = evidence.setup.space
+    mean = np.concatenate([evidence.setup.physics.published, np.zeros(space.size - len(space.base))])
+    if evidence.has_reference:
+        return _rich(evidence, mean), mean
+    keep = list(range(len(space.base)))
+    std = list(TIGHT * evidence.base_std)
+    for j in range(space.dof):
+        for k, c in enumerate(space.own):
+            if c.term in ("coulomb", "viscous") or c.value.get("zs", SHORT) < SHORT:
+                keep.append(space.own_index(j, k))
+                std.append(float(evidence.own_std[j, k]))
+            elif c.term in NEAR_REST:
+                keep.append(space.own_index(j, k))
+                std.append(EVERY_GEAR * max(float(evidence.setup.friction[j, 0]), 1e-3))
+    vectors = sparse.eye(space.size, format="csc")[:, keep]
+    return Directions(vectors, np.array(std), np.ones(len(keep), bool)), mean
+
+
+def _rich(evidence: Evidence, mean: Array) -> Directions:
+    """Every column for both sides, as free as the reference recordings say by their marginal likelihood."""
+    space = evidence.setup.space
+    sums = Sums(evidence.folds, space, mean)
+
+    def model(share: float) -> Directions:
+        own = share * evidence.own_std
+        for k, c in enumerate(space.own):
+            if c.term in ("coulomb", "viscous"):
+                own[:, k] = evidence.own_std[:, k]
+        common = np.full(len(space.common), 1e-3)
+        std = np.concatenate([evidence.base_std, own.ravel(), common])
+        return Directions(sparse.eye(space.size, format="csc"), std, np.ones(space.size, bool))
+
+    return max((model(x) for x in SHARES), key=lambda m: log_evidence(sums, m, reference_only=True))
+
+
+def reweighed(evidence: Evidence, model: Directions, mean: Array) -> Evidence:
+    """Weigh the observed rows by what a model leaves of them: their scale by regime, and its memory."""
+    space, none = evidence.setup.space, evidence.found.directions.take([])
+    for _ in range(2):
+        own = mean + eliminate(Sums(evidence.folds, space, mean), model, none, None).own
+        seen = [r for r, o in zip(evidence.runs, evidence.observed, strict=True) if o]
+        scales = scales_of(seen, [residual(r, space, own) for r in seen])
+        if evidence.has_reference:
+            scales = Scales(
+                np.maximum(scales.sigma, evidence.scales.sigma),
+                np.maximum(scales.inflation, evidence.scales.inflation),
+                np.maximum(scales.fast, evidence.scales.fast),
+            )
+        folds = folds_of(evidence.runs, evidence.observed, evidence.scales, space, observed_scales=scales)
+        evidence = replace(evidence, folds=tuple(folds), observed_scales=scales)
+    return evidence
+
+
+def scored(evidence: Evidence, model: Directions, mean: Array, some: Sequence[Candidate]) -> list[Scored]:
+    """Score hypotheses as additions to a model, with the evidence's weights."""
+    used = sorted({c for x in some for c in x.columns})
+    place = {c: i for i, c in enumerate(used)}
+    directions = evidence.found.directions.take(used)
+    sums = Sums(evidence.folds, evidence.setup.space, mean)
+    out = [eliminate(sums, model, directions, k) for k in range(len(sums.observed))]
+    whole = eliminate(sums, model, directions, None)
+    found = []
+    for c in some:
+        columns = [place[x] for x in c.columns]
+        full = whole.evidence(columns)
+        size, covariance = whole.solve(columns)
+        gain = np.array([full - o.evidence(columns) for o in out])
+        found.append(Scored(c, gain, full, size, np.sqrt(np.diag(covariance))))
+    return found
+
+
+def ranked(evidence: Evidence, model: Directions, mean: Array, skip: Sequence[str] = ()) -> list[Scored]:
+    """Return every hypothesis at its best nonlinear value as an addition to a model, best first."""
+    best: dict[tuple[str, int | None], Scored] = {}
+    for s in scored(evidence, model, mean, [c for c in evidence.found.each if c.effect not in skip]):
+        c = s.candidate
+        if (c.key not in best or s.evidence > best[c.key].evidence) and not (c.positive and s.size[0] < 0):
+            best[c.key] = s
+    return sorted(best.values(), key=lambda s: -s.evidence)
+
+
+def tested(evidence: Evidence, model: Directions, mean: Array, candidate: Candidate) -> Scored:
+    """Score one hypothesis with the rows weighed by what is left once it is in."""
+    weighed = reweighed(evidence, chosen(model, evidence, candidate), mean)
+    return scored(weighed, model, mean, [candidate])[0]
+
+
+def chosen(model: Directions, evidence: Evidence, candidate: Candidate) -> Directions:
+    """Add a hypothesis to a model."""
+    return model + evidence.found.directions.take(candidate.columns)

@@ -1,0 +1,140 @@
+"""What the rigid body contributes to the columns: everything by differentiating the one Lagrangian.
+
+A turned base, an offset encoder, a soft or slack gear, a force at the flange: each is a slope of the same
+momentum and beta that generate the observer, so no formula stands here.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..codegen.regressors import Regressor, regressor
+from ..identify.physical import LinkMap, link_map
+from ..robots import Robot
+from ..robots.model import Model
+from ..symbolic.nominal import nominal_model, robot_arm
+
+Array = NDArray[np.float64]
+
+#: rad, rad/s; steps of central differences: round-off and curvature both stay below 1e-8 of the slope.
+_STEP = 1e-4
+
+
+@dataclass(frozen=True)
+class Gravity:
+    """The arm under gravity along one axis: its regressor and the published base parameters there."""
+
+    regressor: Regressor
+    base: Array
+    points: Array  # base parameters of 1 kg at the origin of each frame 1..N, (B, N)
+
+
+@dataclass(frozen=True)
+class Physics:
+    """An arm's regressor, published base parameters (B,), the map from links, and gravity by axis.
+
+    rotors (B,): what the published rotors alone amount to.
+    """
+
+    regressor: Regressor
+    published: Array
+    map: LinkMap
+    rotors: Array
+    axes: tuple[Gravity, ...]
+    strength: float  # m/s^2
+
+    @property
+    def dof(self) -> int:
+        """N."""
+        return self.regressor.dof
+
+
+def physics_of(model: Model, robot: Robot) -> Physics:
+    """Return what a model's arm contributes; robot: published links, for gravity in other directions.
+
+    Kept between calls: deriving it takes seconds, and many recordings are of one robot.
+    """
+    lean = model.model_copy(
+        update={"inputs": (), "term": (), "fit": None, "covariance": None, "thresholds": None}
+    )
+    return _physics(lean.model_dump_json(), robot.model_dump_json())
+
+
+@lru_cache(maxsize=4)
+def _physics(model_json: str, robot_json: str) -> Physics:
+    model, robot = Model.model_validate_json(model_json), Robot.model_validate_json(robot_json)
+    found = regressor(robot_arm(model))
+    published = np.array([model.base[n].value for n in found.base])
+    strength = float(np.linalg.norm(model.gravity))
+    axes = []
+    for axis in np.eye(3):
+        turned = robot.model_copy(update={"gravity": tuple(strength * axis)})
+        nominal = nominal_model(turned, "", model.dof, model.locked_angles)
+        columns = regressor(robot_arm(nominal))
+        base = np.array([nominal.base[n].value for n in columns.base])
+        axes.append(Gravity(columns, base, _masses(nominal)))
+    mapping = link_map(model)
+    rotors = mapping.rotors @ np.array([j.reflected_inertia for j in robot.joint[: model.dof]])
+    return Physics(found, published, mapping, rotors, tuple(axes), strength)
+
+
+def _masses(model: Model) -> Array:
+    """Return the base parameters (B, N) of 1 kg at the origin of each frame."""
+    links, found = link_map(model).links, []
+    for k, joint in enumerate(model.joint):  # m, mx, my, mz of link k in its turned frame stand at 10 k
+        m, mx, _, mz = links[:, 10 * k : 10 * k + 4].T
+        found.append(m + joint.a * mx + joint.d * mz)
+    return np.stack(found, axis=1)
+
+
+def combined(columns: Regressor, part: str, parameters: Array, **inputs: Array) -> Array:
+    """Return momentum or beta (T, N) at some base parameters (B,)."""
+    values = columns.values(part, **inputs)
+    found = np.zeros((len(values), columns.dof))
+    for k, (row, column) in enumerate(columns.parts[part].places):
+        found[:, row] += values[:, k] * parameters[column]
+    return found
+
+
+def slopes(physics: Physics, base: Array, q: Array, qd: Array) -> Mapping[str, Array]:
+    """Return d(momentum, beta)/d(q, qd) along a motion: each (T, N, N), [.., r, j] of row r by joint j.
+
+    base (B,): parameters at which they are taken. Keys: "pq", "pv", "bq", "bv".
+    """
+    n = physics.dof
+    found = {name: np.empty((len(q), n, n)) for name in ("pq", "pv", "bq", "bv")}
+    for j in range(n):
+        step = np.zeros(n)
+        step[j] = _STEP
+        for part, letter in (("momentum", "p"), ("beta", "b")):
+            for moved, end in (((step, 0 * step), "q"), ((0 * step, step), "v")):
+                up = combined(physics.regressor, part, base, q=q + moved[0], qd=qd + moved[1])
+                down = combined(physics.regressor, part, base, q=q - moved[0], qd=qd - moved[1])
+                found[letter + end][:, :, j] = (up - down) / (2 * _STEP)
+    return found
+
+
+def tilts(physics: Physics, q: Array) -> Array:
+    """Return the torque (T, N, 2), Nm/rad, of a base turned about its x and y axis.
+
+    Gravity then gets a component along -y, +x of the base (small angles); published links.
+    """
+    still = np.zeros_like(q)
+    along = [-combined(g.regressor, "beta", g.base, q=q, qd=still) for g in physics.axes[:2]]
+    return np.stack([-along[1], along[0]], axis=2)
+
+
+def forces(physics: Physics, q: Array, frame: int) -> Array:
+    """Return the torque (T, N, 3), Nm/N, that a unit force at a frame's origin (1..N) needs of the drives.
+
+    A point mass there under gravity along an axis weighs just that; the drive holds against it.
+    """
+    still = np.zeros_like(q)
+    along = [
+        -combined(g.regressor, "beta", g.points[:, frame - 1] / physics.strength, q=q, qd=still)
+        for g in physics.axes
+    ]
+    return np.stack(along, axis=2)

@@ -1,0 +1,128 @@
+"""A finding's numbers: physical parameters with units and standard deviations, from its coefficients."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+from ..robots.model import Model
+from ..symbolic.terms import CATALOGUE
+from .candidates import Candidate
+from .evidence import Evidence
+from .naming import Scored
+from .selection import Directions, Sums, eliminate
+
+Array = NDArray[np.float64]
+
+#: Share by which a drive gain may be off when nothing has shown it (sources differ by 4-50 %).
+GAIN_DOUBT = 0.15
+#: Prior width of a payload's mass (kg), first moments (kg m) and inertias (kg m^2).
+_PAYLOAD = np.array([10.0, 3.0, 3.0, 3.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
+
+Quantity = Mapping[str, Any]
+
+
+def quantity(value: float, std: float | None, unit: str) -> Quantity:
+    """Return a number as findings.json has it, six digits."""
+    return {
+        "value": float(f"{value:.6g}"),
+        "std": None if std is None or not np.isfinite(std) else float(f"{std:.3g}"),
+        "unit": unit,
+    }
+
+
+def parameters_of(
+    evidence: Evidence, before: Directions, mean: Array, found: Scored, model: Model, spread: float | None
+) -> dict[str, Quantity]:
+    """Return the physical parameters of a finding; spread: std of its nonlinear value, if it has one."""
+    c, size, std = found.candidate, found.size, found.std
+    if c.effect == "payload":
+        return _payload(evidence, before, mean, model)
+    if c.effect == "link_inertial":
+        return _link(evidence, c, size, std)
+    simple = {
+        "encoder_offset": ("offset", -1.0, "rad"),
+        "backlash": ("gap", 1.0, "rad"),
+        "time_delay": ("delay", 1.0, "s"),
+        "rotor_inertia": ("inertia", 1.0, "kg m^2"),
+        "drive_gain": ("error", 1.0, "1"),
+    }
+    if c.effect in simple:
+        name, sign, unit = simple[c.effect]
+        return {name: quantity(sign * size[0], std[0], unit)}
+    if c.effect == "joint_elasticity":
+        return {"stiffness": quantity(1 / size[0], std[0] / size[0] ** 2, "Nm/rad")}
+    if c.effect == "base_tilt":
+        return {n: quantity(size[k], std[k], "rad") for k, n in enumerate(("roll", "pitch"))}
+    return _term(evidence, c, size, std, spread)
+
+
+def _term(
+    evidence: Evidence, c: Candidate, size: Array, std: Array, spread: float | None
+) -> dict[str, Quantity]:
+    entry = CATALOGUE[c.terms[0]]
+    units = {n: p.unit for n, p in entry.parameters.items()}
+    found = {n: quantity(size[k], std[k], units[n]) for k, n in enumerate(entry.linear_in)}
+    if c.effect == "cable_spring":
+        found["constant"] = quantity(size[1], std[1], "Nm")
+    for name, value in c.values:
+        if name != "width":
+            found[name] = quantity(value, spread, units[name])
+    return found
+
+
+def _payload(evidence: Evidence, before: Directions, mean: Array, model: Model) -> dict[str, Quantity]:
+    """Mass and centre of mass at the flange, in the frame of the last joint; the gains' doubt is in."""
+    space, physics = evidence.setup.space, evidence.setup.physics
+    links = physics.map.links[:, -10:]
+    vectors = np.zeros((space.size, 10))
+    vectors[: len(links)] = links
+    own = Directions(sparse.csc_matrix(vectors), _PAYLOAD, np.zeros(10, bool))
+    whole = eliminate(Sums(evidence.folds, space, mean), before, own, None)
+    value, covariance = whole.solve(range(10))
+    doubts = [j.drive_gain_std / j.drive_gain if j.drive_gain_std else GAIN_DOUBT for j in model.joint]
+    doubt = float(np.sqrt(np.mean(np.square(doubts))))
+    mass, spread = float(value[0]), float(np.sqrt(covariance[0, 0] + (doubt * value[0]) ** 2))
+    tip = model.joint[-1]
+    centre = value[1:4] / mass - np.array([tip.a, 0.0, tip.d])
+    slope = np.hstack([-value[1:4, None] / mass**2, np.eye(3) / mass])  # (3, 4) of mass and first moments
+    scatter = np.sqrt(np.diag(slope @ covariance[:4, :4] @ slope.T))
+    return {
+        "mass": quantity(mass, spread, "kg"),
+        "centre_of_mass": {
+            "value": [float(f"{x:.4g}") for x in centre],
+            "std": [float(f"{x:.3g}") for x in scatter],
+            "unit": "m",
+        },
+    }
+
+
+def _link(evidence: Evidence, c: Candidate, size: Array, std: Array) -> dict[str, Quantity]:
+    """Return the three base parameters that changed most surely: a link's own numbers are not seen alone."""
+    names = evidence.setup.space.base
+    vectors = evidence.found.directions.vectors[:, list(c.columns)].toarray()[: len(names)]
+    change = vectors @ size
+    spread = np.sqrt((vectors**2) @ std**2)
+    sure = np.abs(change) / np.maximum(spread, 1e-12)
+    order = np.argsort(-sure)[:3]
+    unit = {k: "kg m" if n.startswith("M") else "kg m^2" for k, n in enumerate(names)}
+    return {names[k]: quantity(change[k], spread[k], unit[k]) for k in order if sure[k] > 2}
+
+
+def peak(values: Sequence[float], heights: Sequence[float]) -> tuple[float, float | None]:
+    """Return where evidence (nats) over a grid of a nonlinear value peaks, and its standard deviation.
+
+    A parabola through the best point and its neighbours, over the logarithm of the value.
+    """
+    k = int(np.argmax(heights))
+    if len(values) < 3 or k in (0, len(values) - 1):
+        return values[k], None
+    x = np.log(np.asarray(values[k - 1 : k + 2]))
+    bend, slope, _ = np.polyfit(x - x[1], np.asarray(heights[k - 1 : k + 2]) - heights[k], 2)
+    if bend >= 0:
+        return values[k], None
+    at = float(np.clip(-slope / (2 * bend), x[0] - x[1], x[2] - x[1]))
+    value = float(np.exp(x[1] + at))
+    return value, value * float(np.sqrt(-1 / (2 * bend)))

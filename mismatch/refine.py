@@ -1,0 +1,218 @@
+"""The refined model: published or referenced rigid body, Coulomb and viscous friction, and what was found."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+from ..identify.physical import project
+from ..robots import Robot
+from ..robots.model import Covariance, Model, TermData
+from ..symbolic.terms import CATALOGUE
+from ..symbolic.tilt import tilted
+from .evidence import Evidence
+from .judging import Accepted
+from .naming import TIGHT
+from .rows import DELAYS
+from .selection import Directions, Sums
+
+Array = NDArray[np.float64]
+
+#: rad/s; width of the smooth sign in the model: sharp, and above the noise of a speed at rest.
+_WIDTH = 2e-3
+_DIGITS = 10
+_BASELINE = ("coulomb", "viscous")
+
+
+def refined(
+    evidence: Evidence, nominal: Model, robot: Robot, accepted: Sequence[Accepted],
+    values: Mapping[int, Mapping[str, float]],
+) -> Model:  # fmt: skip
+    """Return the model of the observed robot with everything that was found in it.
+
+    values: by position in `accepted`, nonlinear values that replace those of the grid.
+    """
+    space = evidence.setup.space
+    directions, used = plain(evidence, accepted)
+    mean = np.concatenate([evidence.setup.physics.published, np.zeros(space.size - len(space.base))])
+    theta, spread = _fit(evidence, directions, used, mean)
+    full = np.zeros(space.size)
+    full[used] = theta
+    base = {
+        n: nominal.base[n].model_copy(
+            update={
+                "value": _short(theta[k]),
+                "std": _short(float(np.sqrt(spread[k, k]))),
+                "source": "explain",
+            }
+        )
+        for k, n in enumerate(space.base)
+    }
+    terms = _terms(
+        evidence, accepted, values, full, {int(u): float(np.sqrt(spread[k, k])) for k, u in enumerate(used)}
+    )
+    names = [*space.base, *(_name(evidence, int(u)) for u in used[len(space.base) :])]
+    rows = tuple(" ".join(f"{x:.8g}" for x in row[: k + 1]) for k, row in enumerate(spread))
+    changed = nominal.model_copy(
+        update={
+            "base": base, "term": terms, "covariance": Covariance(names=tuple(names), rows=rows),
+            "source": nominal.source | {"explain": "residuum explain; findings.json says what was added"},
+        }
+    )  # fmt: skip
+    return _geometry(changed, robot, accepted)
+
+
+def _short(value: float) -> float:
+    return float(f"{value:.{_DIGITS}g}")
+
+
+def plain(evidence: Evidence, accepted: Sequence[Accepted]) -> tuple[Directions, NDArray[np.int64]]:
+    """Columns of the model that is handed over, and which of the space's parameters they move."""
+    space, found = evidence.setup.space, evidence.found
+    free = evidence.has_reference or any(a.score.candidate.effect in _INERTIAL for a in accepted)
+    keep = list(range(len(space.base)))
+    std = list(evidence.base_std * (1.0 if free else TIGHT))
+    for j in range(space.dof):
+        for k, c in enumerate(space.own):
+            if c.term in _BASELINE:
+                keep.append(space.own_index(j, k))
+                std.append(float(evidence.own_std[j, k]))
+    vectors = sparse.eye(space.size, format="csc")[:, keep]
+    plain = Directions(vectors, np.array(std), np.ones(len(keep), bool))
+    inertial = () if evidence.has_reference else _INERTIAL  # there the base parameters themselves are free
+    named = [
+        c for a in accepted if a.score.candidate.effect not in inertial for c in a.score.candidate.columns
+    ]
+    extra = found.directions.take(named)
+    moved = np.unique(extra.vectors.nonzero()[0]) if named else np.empty(0, np.int64)
+    return plain + extra, np.array([*keep, *(m for m in moved if m not in set(keep))], np.int64)
+
+
+_INERTIAL = ("payload", "link_inertial", "rotor_inertia", "base_free")
+
+
+def _fit(
+    evidence: Evidence, directions: Directions, used: NDArray[np.int64], mean: Array
+) -> tuple[Array, Array]:
+    """Fit and make physical; return the used parameters on the observed side and their covariance."""
+    space = evidence.setup.space
+    sums = Sums(evidence.folds, space, mean)
+    shared = directions.vectors @ sparse.diags(directions.shared.astype(float))
+    a = directions.vectors.T @ (directions.vectors.T @ sums.total[:-1, :-1]).T
+    a = a + shared.T @ (shared.T @ sums.reference[:-1, :-1]).T + np.diag(1 / directions.std**2)
+    r = directions.vectors.T @ sums.total[:-1, -1] + shared.T @ sums.reference[:-1, -1]
+    inverse = np.linalg.inv(a)
+    picked = directions.vectors[used].toarray()
+    theta = mean[used] + picked @ (inverse @ r)
+    spread = picked @ inverse @ picked.T
+    positive = [
+        k for k, u in enumerate(used) if _column(evidence, int(u)) in (("coulomb", "Fc"), ("viscous", "Fv"))
+    ]
+    information = np.linalg.inv(spread + 1e-12 * np.diag(np.diag(spread)))
+    theta, _ = project(theta, (information + information.T) / 2, evidence.setup.physics.map, positive)
+    return theta, (spread + spread.T) / 2
+
+
+def _column(evidence: Evidence, index: int) -> tuple[str, str] | None:
+    space = evidence.setup.space
+    b, k = len(space.base), len(space.own)
+    if not b <= index < b + space.dof * k:
+        return None
+    c = space.own[(index - b) % k]
+    return c.term, c.parameter
+
+
+def _name(evidence: Evidence, index: int) -> str:
+    space = evidence.setup.space
+    b, k = len(space.base), len(space.own)
+    if index < b + space.dof * k:
+        c = space.own[(index - b) % k]
+        return f"{c.term}{(index - b) // k + 1}_{c.parameter}"
+    return space.common[index - b - space.dof * k]
+
+
+def _terms(
+    evidence: Evidence, accepted: Sequence[Accepted], values: Mapping[int, Mapping[str, float]], full: Array,
+    std: Mapping[int, float],
+) -> tuple[TermData, ...]:  # fmt: skip
+    space = evidence.setup.space
+    found: dict[tuple[str, int], TermData] = {}
+
+    def add(
+        term: str, joint: int, fixed: Mapping[str, float], linear: Mapping[str, tuple[float, float]]
+    ) -> None:
+        entry = CATALOGUE[term]
+        numbers = {n: p.default for n, p in entry.parameters.items() if p.default is not None} | dict(fixed)
+        if "width" in entry.parameters:
+            numbers["width"] = _WIDTH
+        numbers |= {n: _short(v) for n, (v, _) in linear.items()}
+        found[term, joint] = TermData(
+            name=term, joint=joint + 1, parameters=numbers, source="explain",
+            std={n: _short(s) for n, (_, s) in linear.items()},
+        )  # fmt: skip
+
+    for j in range(space.dof):
+        for k, column in enumerate(space.own):
+            at = space.own_index(j, k)
+            if column.term in _BASELINE:
+                add(column.term, j, {}, {column.parameter: (full[at], std[at])})
+    for position, a in enumerate(accepted):
+        c = a.score.candidate
+        if c.joint is not None and c.terms and c.terms[0] in CATALOGUE and c.terms[0] not in _BASELINE:
+            mine = {
+                x.parameter: space.own_index(c.joint, k)
+                for k, x in enumerate(space.own)
+                if x.term == c.terms[0] and x.values == c.values
+            }
+            linear = {n: (full[i], std[i]) for n, i in mine.items()}
+            fixed = {n: v for n, v in c.values if n != "width"} | dict(values.get(position, {}))
+            add(c.terms[0], c.joint, fixed, linear)
+            if c.effect == "cable_spring":
+                at = next(space.own_index(c.joint, k) for k, x in enumerate(space.own) if x.term == "offset")
+                add("offset", c.joint, {}, {"c": (full[at], std[at])})
+        _shared_term(evidence, a, full, std, add)
+    return tuple(sorted(found.values(), key=lambda t: t.joint))
+
+
+def _shared_term(evidence: Evidence, a: Accepted, full: Array, std: Mapping[int, float], add) -> None:  # type: ignore[no-untyped-def]
+    """Terms of effects whose columns reach all joints: the same number stands on each."""
+    space, c = evidence.setup.space, a.score.candidate
+    if c.effect == "time_delay":
+        at = space.common_index(f"delay{DELAYS.index(c.values[0][1]) + 1}")
+        for j in range(space.dof):
+            add("delay", j, {}, {"d": (full[at], std[at])})
+    if c.effect in ("joint_elasticity", "backlash") and c.joint is not None:
+        at = space.common_index(
+            f"{ {'joint_elasticity': 'elasticity', 'backlash': 'backlash'}[c.effect] }{c.joint + 1}"
+        )
+        inertia = _own_inertia(evidence, c.joint)
+        if c.effect == "joint_elasticity":
+            add("elasticity", c.joint, {}, {"c": (-inertia * full[at], inertia * std[at])})
+
+
+def _own_inertia(evidence: Evidence, joint: int) -> float:
+    """Mean M_jj (kg m^2) over the observed poses: momentum of joint j at unit speed of joint j."""
+    from .physics import combined
+
+    q = np.concatenate([r.q for r in evidence.runs if len(r)])[::50]
+    unit = np.zeros_like(q)
+    unit[:, joint] = 1.0
+    setup = evidence.setup
+    return float(combined(setup.physics.regressor, "momentum", setup.base, q=q, qd=unit)[:, joint].mean())
+
+
+def _geometry(model: Model, robot: Robot, accepted: Sequence[Accepted]) -> Model:
+    """Put offsets of encoders, turned gravity and drive gains where the model has them."""
+    joints = list(model.joint)
+    for a in accepted:
+        c, size = a.score.candidate, a.score.size
+        if c.effect == "encoder_offset" and c.joint is not None:
+            turned = float(joints[c.joint].offset) + float(size[0])
+            joints[c.joint] = joints[c.joint].model_copy(update={"offset": turned})
+        if c.effect == "drive_gain" and c.joint is not None:
+            gain = joints[c.joint].drive_gain / (1 - float(size[0]))
+            joints[c.joint] = joints[c.joint].model_copy(update={"drive_gain": _short(gain)})
+        if c.effect == "base_tilt":
+            model = tilted(model, robot, float(size[0]), float(size[1]))
+    return model.model_copy(update={"joint": tuple(joints)})

@@ -1,0 +1,52 @@
+"""Fits of a given model: on all rows, and with one fold left out; residuals row by row."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .evidence import Evidence, residual
+from .grams import blocks
+from .selection import Directions, Sums, eliminate
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """Residuals (n, N) of each observed run under a model that has not seen the row's fold; fold (n,)."""
+
+    residual: tuple[Array, ...]
+    fold: tuple[NDArray[np.int64], ...]
+
+
+def parameters(evidence: Evidence, model: Directions, mean: Array, left_out: int | None = None) -> Array:
+    """Return the parameters (P,) on the observed side of a model fitted to all folds, or without one."""
+    none = evidence.found.directions.take([])
+    sums = Sums(evidence.folds, evidence.setup.space, mean)
+    return np.asarray(mean + eliminate(sums, model, none, left_out).own, np.float64)
+
+
+def left_out(evidence: Evidence, model: Directions, mean: Array) -> LeftOut:
+    """Return what a model leaves of every observed row that it has not seen."""
+    none, space = evidence.found.directions.take([]), evidence.setup.space
+    sums = Sums(evidence.folds, space, mean)
+    parts, number = blocks(evidence.runs, evidence.observed, True), 0
+    residuals, folds = [], []
+    for run in observed_runs(evidence):
+        rows = evidence.runs[run]
+        found, which = np.zeros(rows.torque.shape), np.zeros(len(rows), np.int64)
+        theirs = [p for r, p in parts if r == run]
+        for part in theirs:
+            own = mean + eliminate(sums, model, none, number).own
+            found[part] = residual(rows, space, own, part)
+            which[part] = number
+            number += 1
+        residuals.append(found)
+        folds.append(which)
+    return LeftOut(tuple(residuals), tuple(folds))
+
+
+def observed_runs(evidence: Evidence) -> list[int]:
+    """Return which runs are observed ones and hold rows."""
+    return [r for r, o in enumerate(evidence.observed) if o and len(evidence.runs[r])]

@@ -1,0 +1,368 @@
+"""From recordings to filtered rows: torque = columns @ parameters, each joint with its own matrix.
+
+Both sides pass the same zero-phase low-pass, and momentum is differentiated by the kernel
+(identify/kernel.py). Rows stand four to a period of the cutoff.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
+
+from ..codegen.columns import columns as term_columns
+from ..identify.kernel import Filter, Kernel, batches, segments
+from ..identify.rows import GAP, REST, SAMPLES_PER_PERIOD
+from ..recordings import Recording, speeds
+from ..symbolic.terms import CATALOGUE
+from .columns import WIDTH, Space
+from .fast import Fast, fast_band
+from .flexible import Ranges, curves
+from .physics import Physics, combined, slopes, tilts
+
+Array = NDArray[np.float64]
+
+#: Hz; lowered to an eighth of the recording's rate.
+CUTOFF = 15.0
+#: Rows whose samples are worked on together.
+_PORTION = 300
+#: Hz; slopes of the rigid body are smooth: they are evaluated at least this often, and interpolated.
+_SLOPE_RATE = 100.0
+#: s; delays at which the torque's own change is taken, so that a coefficient is a delay near each.
+DELAYS = (0.004, 0.01, 0.02)
+#: s; a gear's wind-up is followed this fast: its rate is differentiated twice more, and so is its noise.
+WIND_UP = 0.04
+#: Nm; a gear's load within this of zero has no flank.
+_FLANK = 0.5
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What rows are made with. gains (N,) Nm/A; base (B,): parameters of loads and slopes.
+
+    friction (N, 2): Coulomb and viscous, of the torque that is delayed or scaled; limits: ranges of the
+    flexible curve (None: it is left out).
+    """
+
+    physics: Physics
+    space: Space
+    gains: Array
+    base: Array
+    friction: Array
+    limits: Ranges | None = None
+
+
+@dataclass(frozen=True)
+class Rows:
+    """n rows of a recording: time (n,) s; torque (n, N) Nm; columns[j] (n, P_j) in the space's order.
+
+    moving (n, N): share of the kernel in which the joint moves; starts: where gap-free stretches begin.
+    q, qd, load, temperature, since (n, N): smoothed state there. step: s.
+    """
+
+    time: Array
+    torque: Array
+    columns: tuple[Array, ...]
+    moving: Array
+    q: Array
+    qd: Array
+    load: Array
+    temperature: Array
+    since: Array
+    starts: tuple[int, ...]
+    step: float
+    fast: Fast | None = None
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+
+@dataclass(frozen=True)
+class _Track:
+    """A recording's samples, joints of the model only: (T, N).
+
+    load: torque (Nm) that the gear carries; calm: without what is faster than WIND_UP, load_rate: calm's
+    rate; motor: load with the rotor's own inertia.
+    """
+
+    time: Array
+    q: Array
+    qd: Array
+    current: Array
+    temperature: Array
+    load: Array
+    calm: Array
+    load_rate: Array
+    motor: Array
+    since: Array
+    held: Array  # (T, N, H): columns that remember, made over the whole recording at once
+
+
+def make_rows(recording: Recording, setup: Setup) -> Rows:
+    """Filter a clean recording. There may be no row at all: stretches shorter than the kernel give none."""
+    track, kernel, rate = _track(recording, setup)
+    step = 1 / (4 * kernel.cutoff)
+    pieces, starts, count = list[Rows](), list[int](), 0
+    for stretch in segments(track.time, GAP / rate):
+        for k, (at, part) in enumerate(_portions(track.time, stretch, kernel, step)):
+            if k == 0:
+                starts.append(count)
+            pieces.append(_filtered(track, part, at, setup, kernel))
+            count += len(at)
+    origin = float(recording.timestamp[0])
+    rows = _joined(pieces, tuple(starts), step, setup.space, origin)
+    return replace(rows, fast=_fast(track, setup, kernel, origin))
+
+
+def _fast(track: _Track, setup: Setup, kernel: Kernel, origin: float) -> Fast | None:
+    own = [c for c in setup.space.own if c.term == "ripple"]
+    if not own:
+        return None
+    columns = [_column(track, slice(None), c.term, c.parameter, c.values) for c in own]
+    torque = track.current * setup.gains
+    found = fast_band(track.time, torque, columns, track.qd, track.since, kernel.cutoff)
+    return replace(found, time=tuple(t + origin for t in found.time))
+
+
+def rate_of(recording: Recording) -> float:
+    """Return samples per second, by the median step."""
+    return 1 / float(np.median(np.diff(recording.timestamp)))
+
+
+def _portions(time: Array, stretch: slice, kernel: Kernel, step: float) -> Iterator[tuple[Array, slice]]:
+    first, last = time[stretch][0] + kernel.support, time[stretch][-1] - kernel.support
+    at = np.arange(first, last + 1e-9, step)
+    for start in range(0, len(at), _PORTION):
+        some = at[start : start + _PORTION]
+        left = max(stretch.start, int(np.searchsorted(time, some[0] - kernel.support, "left")) - 1)
+        right = min(stretch.stop, int(np.searchsorted(time, some[-1] + kernel.support, "right")) + 1)
+        if right - left > 2:
+            yield some, slice(left, right)
+
+
+def _track(recording: Recording, setup: Setup) -> tuple[_Track, Kernel, float]:
+    n = setup.physics.dof
+    time = recording.timestamp - recording.timestamp[0]
+    rate = rate_of(recording)
+    kernel = Kernel(min(CUTOFF, rate / SAMPLES_PER_PERIOD))
+    q, qd = recording.q[:, :n], speeds(recording)[:, :n]
+    hot = recording.joint_temperatures
+    temperature = np.full_like(q, 30.0) if hot is None else hot[:, :n]
+    load, calm, load_rate, motor = _load(time, q, qd, setup, kernel, rate)
+    track = _Track(
+        time, q, qd, recording.current[:, :n], temperature, load, calm, load_rate, motor, _since(time, qd),
+        np.empty((len(q), n, 0)),
+    )  # fmt: skip
+    return replace(track, held=_held(track, setup)), kernel, rate
+
+
+def _load(
+    time: Array, q: Array, qd: Array, setup: Setup, kernel: Kernel, rate: float
+) -> tuple[Array, Array, Array, Array]:
+    """Return load, calm, load_rate and motor of a `_Track`, each (T, N), by the setup's base parameters."""
+    columns, n = setup.physics.regressor, setup.physics.dof
+    momentum = combined(columns, "momentum", setup.base, q=q, qd=qd)
+    rotors = combined(columns, "momentum", setup.physics.rotors, q=q, qd=qd)
+    beta = combined(columns, "beta", setup.base, q=q, qd=qd)
+    load, calm, slope, motor = (np.zeros_like(q) for _ in range(4))
+    filtering, step = Filter(kernel), 1 / (4 * kernel.cutoff)
+    for stretch in segments(time, GAP / rate):
+        own = time[stretch]
+        at = np.arange(own[0], own[-1], step)
+        if len(own) < 8 or len(at) < 2:
+            continue
+        both, coarse = np.hstack([momentum[stretch], rotors[stretch]]), np.empty((len(at), 2 * n))
+        for rows, samples in batches(own, at, kernel):
+            _, derived = filtering.weights(own[samples], at[rows], (0, 1))
+            coarse[rows] = derived @ both[samples]
+        geared = coarse[:, :n] - coarse[:, n:]  # the motor turns its rotor itself, the gear does not
+        motor[stretch] = _between(own, at, coarse[:, :n]) - beta[stretch]
+        load[stretch] = _between(own, at, geared) - beta[stretch]
+        total = gaussian_filter1d(geared - _between(at, own, beta[stretch]), WIND_UP / step, axis=0)
+        calm[stretch] = _between(own, at, total)
+        slope[stretch] = _between(own, at, np.gradient(total, step, axis=0))
+    return load, calm, slope, motor
+
+
+def _since(time: Array, qd: Array) -> Array:
+    """Seconds since each joint last changed its direction (T, N); rests in between do not count as one."""
+    found = np.empty_like(qd)
+    for j in range(qd.shape[1]):
+        moving = np.flatnonzero(np.abs(qd[:, j]) > REST)
+        direction = np.sign(qd[moving, j])
+        begins = moving[np.flatnonzero(np.diff(direction, prepend=0.0) != 0)] if len(moving) else moving
+        last = np.searchsorted(begins, np.arange(len(time)), "right") - 1
+        found[:, j] = np.where(last >= 0, time - time[begins[last]] if len(begins) else 9.0, 9.0)
+    return found
+
+
+def _remembers(term: str) -> bool:
+    return bool(CATALOGUE[term].state)
+
+
+def _held(track: _Track, setup: Setup) -> Array:
+    """Columns of the terms with memory (T, N, H), in the order of the space's own columns."""
+    found = [
+        _column(track, slice(None), c.term, c.parameter, c.values)
+        for c in setup.space.own
+        if c.term in CATALOGUE and _remembers(c.term)
+    ]
+    return np.stack(found, axis=2) if found else track.held
+
+
+def _column(
+    track: _Track, part: slice, term: str, parameter: str, values: tuple[tuple[str, float], ...]
+) -> Array:
+    dt = np.diff(track.time, prepend=track.time[0] - np.median(np.diff(track.time)))
+    return term_columns(
+        term, dict(values), track.q[part], track.qd[part], track.load[part], track.temperature[part], dt[part]
+    )[parameter]
+
+
+def _own(track: _Track, part: slice, setup: Setup) -> Array:
+    """Own columns of some samples (T, N, K)."""
+    found, held = list[Array](), 0
+    cache: dict[tuple[str, tuple[tuple[str, float], ...]], dict[str, Array]] = {}
+    sign = track.qd[part] / (np.abs(track.qd[part]) + WIDTH)
+    for c in setup.space.own:
+        if c.term == "gain":
+            found.append(-_torque(track, part, setup))
+        elif c.term == "curve":
+            continue
+        elif _remembers(c.term):
+            found.append(track.held[part, :, held])
+            held += 1
+        else:
+            key = c.term, c.values
+            if key not in cache:
+                cache[key] = term_columns(
+                    c.term, dict(c.values), track.q[part], track.qd[part], track.load[part],
+                    track.temperature[part], np.ones(len(sign)),
+                )  # fmt: skip
+            found.append(cache[key][c.parameter])
+    if setup.limits is not None:
+        found += curves(
+            track.q[part], track.qd[part], track.load[part], track.temperature[part], track.since[part], sign,
+            setup.limits,
+        )  # fmt: skip
+    return np.stack(found, axis=2)
+
+
+def _torque(track: _Track, part: slice, setup: Setup) -> Array:
+    """Drive torque (T, N) that the setup's parameters and friction expect."""
+    qd = track.qd[part]
+    sign = qd / (np.abs(qd) + WIDTH)
+    return np.asarray(track.motor[part] + setup.friction[:, 0] * sign + setup.friction[:, 1] * qd, np.float64)
+
+
+def _common(track: _Track, part: slice, setup: Setup) -> tuple[Array, Array]:
+    """Columns that act on all joints: what is differentiated and what is kept, each (T, N, S)."""
+    n, t = setup.physics.dof, track.time[part]
+    every = max(1, int(1 / _SLOPE_RATE / max(float(np.median(np.diff(t))), 1e-6)))
+    pick = np.unique(np.append(np.arange(0, len(t), every), len(t) - 1))
+    q, qd = track.q[part][pick], track.qd[part][pick]
+    slope = slopes(setup.physics, setup.base, q, qd)
+    flat = {k: _between(t, t[pick], v.reshape(len(pick), -1)).reshape(len(t), n, n) for k, v in slope.items()}
+    load, rate = track.calm[part], track.load_rate[part]
+    flank = load / (np.abs(load) + _FLANK)
+    flank_rate = _FLANK / (np.abs(load) + _FLANK) ** 2 * rate
+    moved, kept = list[Array](), list[Array]()
+    for dq, dv in ((None, None), (-load, -rate), (-flank, -flank_rate)):
+        for j in range(n):
+            by_q = 1.0 if dq is None else dq[:, j : j + 1]
+            p, b = flat["pq"][:, :, j] * by_q, flat["bq"][:, :, j] * by_q
+            if dv is not None:
+                p = p + flat["pv"][:, :, j] * dv[:, j : j + 1]
+                b = b + flat["bv"][:, :, j] * dv[:, j : j + 1]
+            moved.append(p)
+            kept.append(-b)
+    turned = _between(t, t[pick], tilts(setup.physics, q).reshape(len(pick), -1)).reshape(len(t), n, 2)
+    for k in range(2):
+        moved.append(np.zeros_like(load))
+        kept.append(turned[:, :, k])
+    body = track.motor[part]
+    # what friction does at reversals depends on more than the clock, so it gets a coefficient of its own
+    for torque in (body, _torque(track, part, setup) - body):
+        for delay in DELAYS:
+            moved.append(np.zeros_like(load))
+            kept.append((_between(np.maximum(t - delay, t[0]), t, torque) - torque) / delay)
+    return np.stack(moved, axis=2), np.stack(kept, axis=2)
+
+
+def common_names(dof: int) -> tuple[str, ...]:
+    """Return the names of the columns of `_common`."""
+    joints = range(1, dof + 1)
+    per_joint = [f"{kind}{j}" for kind in ("encoder", "elasticity", "backlash") for j in joints]
+    return (
+        *per_joint,
+        "roll",
+        "pitch",
+        *(f"{x}{k + 1}" for x in ("delay", "reversal") for k in range(len(DELAYS))),
+    )
+
+
+def _between(at: Array, known: Array, values: Array) -> Array:
+    """Interpolate columns (K, C) from instants `known` to `at`."""
+    if len(known) == len(at) and np.array_equal(known, at):
+        return values
+    right = np.clip(np.searchsorted(known, at, "left"), 1, len(known) - 1)
+    share = np.clip((at - known[right - 1]) / (known[right] - known[right - 1]), 0, 1)[:, None]
+    return np.asarray((1 - share) * values[right - 1] + share * values[right], np.float64)
+
+
+def _filtered(track: _Track, part: slice, at: Array, setup: Setup, kernel: Kernel) -> Rows:
+    physics, n = setup.physics, setup.physics.dof
+    q, qd, count = track.q[part], track.qd[part], part.stop - part.start
+    momentum = physics.regressor.values("momentum", q=q, qd=qd)
+    beta = physics.regressor.values("beta", q=q, qd=qd)
+    own = _own(track, part, setup)
+    states = [q, qd, track.load[part], track.temperature[part], np.minimum(track.since[part], 9.0)]
+    plain = [beta, own.reshape(count, -1), track.current[part] * setup.gains, np.abs(qd) > REST, *states]
+    shared_moved, shared_kept = (
+        _common(track, part, setup) if setup.space.common else (np.empty((count, n, 0)),) * 2
+    )
+    slow = np.hstack([momentum, shared_moved.reshape(count, -1)])
+    fast = np.hstack([*plain, shared_kept.reshape(count, -1)])
+    moved, kept = np.empty((len(at), slow.shape[1])), np.empty((len(at), fast.shape[1]))
+    filtering = Filter(kernel)
+    for rows, samples in batches(track.time[part], at, kernel):
+        smooth, slope = filtering.weights(track.time[part][samples], at[rows])
+        moved[rows] = slope @ slow[samples]
+        kept[rows] = smooth @ fast[samples]
+    return _placed(at, moved, kept, momentum.shape[1], beta.shape[1], setup)
+
+
+def _placed(at: Array, moved: Array, kept: Array, m: int, b: int, setup: Setup) -> Rows:
+    space, parts = setup.space, setup.physics.regressor.parts
+    n, k, s = space.dof, len(space.own), len(space.common)
+    own = kept[:, b : b + n * k].reshape(-1, n, k)
+    after = b + n * k
+    torque, moving, q, qd, load, temperature, since = (
+        kept[:, after + i * n : after + (i + 1) * n] for i in range(7)
+    )
+    rows = len(at)
+    common = moved[:, m:].reshape(rows, n, s) + kept[:, after + 7 * n :].reshape(rows, n, s)
+    matrices = []
+    for j in range(n):
+        position = {p: i for i, p in enumerate(space.seen[j])}
+        rigid = np.zeros((len(at), len(position)))
+        for values, part, sign in ((moved, "momentum", 1.0), (kept, "beta", -1.0)):
+            for i, (row, column) in enumerate(parts[part].places):
+                if row == j:
+                    rigid[:, position[column]] += sign * values[:, i]
+        matrices.append(np.hstack([rigid, own[:, j], common[:, j]]))
+    return Rows(at, torque, tuple(matrices), moving, q, qd, load, temperature, since, (), 0.0)
+
+
+def _joined(pieces: list[Rows], starts: tuple[int, ...], step: float, space: Space, origin: float) -> Rows:
+    if not pieces:
+        none = np.empty((0, space.dof))
+        empty = tuple(np.empty((0, len(ix))) for ix in space.indices)
+        return Rows(np.empty(0), none, empty, none, none, none, none, none, none, (), step)
+    names = ("torque", "moving", "q", "qd", "load", "temperature", "since")
+    joined: dict[str, Any] = {name: np.vstack([getattr(p, name) for p in pieces]) for name in names}
+    columns = tuple(np.vstack([p.columns[j] for p in pieces]) for j in range(space.dof))
+    time = np.concatenate([p.time for p in pieces]) + origin
+    return Rows(time, columns=columns, starts=starts, step=step, **joined)

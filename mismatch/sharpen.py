@@ -1,0 +1,47 @@
+"""Nonlinear values between the points of their grid, with their uncertainty (variable projection)."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from .candidates import of_key
+from .evidence import Evidence
+from .judging import Judged
+from .naming import scored
+from .quantities import peak
+from .selection import Directions
+
+
+@dataclass(frozen=True)
+class Sharp:
+    """A finding's nonlinear value by name, and its standard deviation (None: at the border of its grid)."""
+
+    value: Mapping[str, float]
+    std: float | None
+
+
+def sharpened(evidence: Evidence, judged: Judged) -> dict[int, Sharp]:
+    """Return, by position among the accepted, the nonlinear value at which the evidence peaks.
+
+    evidence: weighed by what the final model leaves.
+    """
+    found: dict[int, Sharp] = {}
+    for k, a in enumerate(judged.accepted):
+        c = a.score.candidate
+        if not (free := [n for n, _ in c.values if n not in ("width", "n", "around")]):
+            continue
+        same = [x for x in of_key(evidence.found.each, c.key) if x.terms == c.terms]
+        if len(same) < 3:
+            continue
+        heights = [s.evidence for s in scored(evidence, without(evidence, judged, k), judged.mean, same)]
+        value, std = peak([dict(x.values)[free[0]] for x in same], heights)
+        found[k] = Sharp({free[0]: value}, std)
+    return found
+
+
+def without(evidence: Evidence, judged: Judged, k: int) -> Directions:
+    """Return the model of all findings but the k-th."""
+    size = len(judged.model)
+    widths = [len(a.score.candidate.columns) for a in judged.accepted]
+    first = size - sum(widths)
+    start = first + sum(widths[:k])
+    return judged.model.take([i for i in range(size) if not start <= i < start + widths[k]])

@@ -1,0 +1,43 @@
+"""The honest rest: something that no name of the catalogue explains, with its place and a flexible curve."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .candidates import Candidate
+from .episodes import Episode
+from .evidence import Evidence
+from .judging import EVIDENCE, STEADY, Judged, effective
+from .naming import Scored, scored
+
+Array = NDArray[np.float64]
+
+#: Of what is left on a joint, a curve must explain this share before it is called unknown.
+_SHARE = 0.04
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """Unexplained torque on a joint (0-based): share of what is left that a flexible curve explains."""
+
+    joint: int
+    share: float
+    score: Scored | None
+    reason: str
+
+
+def unknowns(
+    evidence: Evidence, weighed: Evidence, judged: Judged, found: Sequence[Episode]
+) -> list[Unknown]:
+    """Return joints on which a flexible curve, or noise that changed, remains after all names."""
+    curves = [Candidate("unknown", j, c) for j, c in enumerate(evidence.found.curve)]
+    result = list[Unknown]()
+    for s in scored(weighed, judged.model, judged.mean, curves):
+        j = s.candidate.joint
+        assert j is not None
+        share = float(1 - np.exp(-2 * max(s.total, 0.0) / max(effective(evidence, j), 1.0)))
+        if min(s.evidence, s.total) > EVIDENCE and s.steadiness > STEADY and share > _SHARE:
+            result.append(Unknown(j, share, s, "a smooth curve explains it, no name does"))
+    return result
