@@ -48,6 +48,7 @@ class Parts:
     proof: Proof
     before: LeftOut
     after: LeftOut
+    placebos: float | None
     regions: tuple[Region, ...]
     names: Sequence[str]
     lacks: tuple[str, ...]
@@ -75,7 +76,7 @@ def compose(p: Parts) -> Explanation:
             "after": _row(p.proof.after),
             "after_interval95": [_row(x) for x in p.proof.interval],
         },
-        "placebo_rate": None,
+        "placebo_rate": p.placebos,
     }
     return Explanation(
         p.robot.title, p.sources, answer, sentence(verdict, findings), p.model, p.proof, p.regions,

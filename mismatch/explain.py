@@ -21,6 +21,7 @@ from .evidence import Evidence, gather, residual
 from .judging import Judged, judge
 from .naming import reweighed
 from .next_motion import next_motion
+from .placebo import placebo_rate
 from .proof import prove
 from .refine import plain, refined
 from .refit import observed_runs, parameters
@@ -105,11 +106,13 @@ def _explained(
     gear = float(task.robot.joint[0].gear)
     runs = [evidence.runs[r] for r in which]
     places = regions(runs, names, before.residual, gear)
+    progress("placebos")
+    rate = placebo_rate(weighed, judged)
     progress("refined model")
     model = refined(weighed, nominal, task.robot, judged.accepted, {k: s.value for k, s in sharp.items()})
     parts = Parts(
         task.robot, nominal, sources, evidence, judged, sharp, found, left, force, strange, proof, before,
-        after, tuple(places), names, lacks, model, _proposal(task, weighed, judged, progress),
+        after, rate, tuple(places), names, lacks, model, _proposal(task, weighed, judged, progress),
     )  # fmt: skip
     return compose(parts)
 

@@ -28,7 +28,7 @@ MOST, TRIES = 6, 10
 #: s; current and motion may be less than this apart without anything being wrong: a cycle and a half.
 SYNCHRONOUS = 0.003
 #: What builds up with travel or late is most of the Coulomb level, or it is something else.
-_PART_OF_COULOMB = {"presliding_hysteresis": 0.25, "velocity_lag": 0.25}
+_PART_OF_COULOMB = {"presliding_hysteresis": 0.35, "velocity_lag": 0.25}
 
 
 @dataclass(frozen=True)

@@ -23,8 +23,11 @@ Array = NDArray[np.float64]
 TIGHT = 0.03
 #: Around standstill every gear differs from Coulomb's law by a few percent of it, in one shape or another.
 NEAR_REST, EVERY_GEAR = ("stribeck", "presliding", "lag"), 0.03
+#: rad; over so short a travel the whole Coulomb level may build up.
+SHORTEST = 3e-4
 #: Of a column's prior width, for columns that only describe the reference's own imperfections.
 SHARES = (0.003, 0.01, 0.03, 0.1)
+BARE = 1e-4
 
 
 @dataclass(frozen=True)
@@ -67,31 +70,45 @@ def nuisance(evidence: Evidence) -> tuple[Directions, Array]:
     std = list(TIGHT * evidence.base_std)
     for j in range(space.dof):
         for k, c in enumerate(space.own):
-            if c.term in ("coulomb", "viscous") or c.value.get("zs", SHORT) < SHORT:
+            level = max(float(evidence.setup.friction[j, 0]), 1e-3)
+            if c.term in ("coulomb", "viscous"):
                 keep.append(space.own_index(j, k))
                 std.append(float(evidence.own_std[j, k]))
             elif c.term in NEAR_REST:
                 keep.append(space.own_index(j, k))
-                std.append(EVERY_GEAR * max(float(evidence.setup.friction[j, 0]), 1e-3))
+                travel = c.value.get("zs", SHORT)
+                std.append(level * (SHORTEST / travel if travel < SHORT else EVERY_GEAR))
     vectors = sparse.eye(space.size, format="csc")[:, keep]
     return Directions(vectors, np.array(std), np.ones(len(keep), bool)), mean
 
 
 def _rich(evidence: Evidence, mean: Array) -> Directions:
-    """Every column for both sides, as free as the reference recordings say by their marginal likelihood."""
+    """Every column for both sides, as free as the reference recordings say by their marginal likelihood.
+
+    First one freedom for all columns, then each term that the reference asks for gets its full prior width.
+    """
     space = evidence.setup.space
     sums = Sums(evidence.folds, space, mean)
+    # what heat does is the reference's own only where the reference shows it; else it explains anything
+    terms = ["heat" if c.parameter == "temperature" else c.term for c in space.own]
+    heated = {"heat", "temperature_dependent"}
+    free = {"coulomb", "viscous"}
 
-    def model(share: float) -> Directions:
-        own = share * evidence.own_std
-        for k, c in enumerate(space.own):
-            if c.term in ("coulomb", "viscous"):
-                own[:, k] = evidence.own_std[:, k]
+    def model(share: float, wide: set[str]) -> Directions:
+        width = np.array([1.0 if t in wide else BARE if t in heated else share for t in terms])
         common = np.full(len(space.common), 1e-3)
-        std = np.concatenate([evidence.base_std, own.ravel(), common])
+        std = np.concatenate([evidence.base_std, (width * evidence.own_std).ravel(), common])
         return Directions(sparse.eye(space.size, format="csc"), std, np.ones(space.size, bool))
 
-    return max((model(x) for x in SHARES), key=lambda m: log_evidence(sums, m, reference_only=True))
+    def worth(share: float, wide: set[str]) -> float:
+        return log_evidence(sums, model(share, wide), reference_only=True)
+
+    share = max(SHARES, key=lambda s: worth(s, free))
+    best = worth(share, free)
+    for term in dict.fromkeys(t for t in terms if t not in free and t != "gain"):
+        if (found := worth(share, free | {term})) > best:
+            best, free = found, free | {term}
+    return model(share, free)
 
 
 def reweighed(evidence: Evidence, model: Directions, mean: Array) -> Evidence:

@@ -15,7 +15,7 @@ from .evidence import Evidence
 from .judging import Accepted
 from .naming import TIGHT
 from .rows import DELAYS
-from .selection import Directions, Sums
+from .selection import Directions, Sums, normal_equations
 
 Array = NDArray[np.float64]
 
@@ -98,11 +98,8 @@ def _fit(
     """Fit and make physical; return the used parameters on the observed side and their covariance."""
     space = evidence.setup.space
     sums = Sums(evidence.folds, space, mean)
-    shared = directions.vectors @ sparse.diags(directions.shared.astype(float))
-    a = directions.vectors.T @ (directions.vectors.T @ sums.total[:-1, :-1]).T
-    a = a + shared.T @ (shared.T @ sums.reference[:-1, :-1]).T + np.diag(1 / directions.std**2)
-    r = directions.vectors.T @ sums.total[:-1, -1] + shared.T @ sums.reference[:-1, -1]
-    inverse = np.linalg.inv(a)
+    a, r = normal_equations(sums, directions, sums.total)
+    inverse = np.linalg.inv(a + np.diag(1 / directions.std**2))
     picked = directions.vectors[used].toarray()
     theta = mean[used] + picked @ (inverse @ r)
     spread = picked @ inverse @ picked.T

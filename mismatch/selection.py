@@ -111,18 +111,27 @@ class Eliminated:
         return self.schur[np.ix_(ix, ix)] + np.diag(1 / self.std[ix] ** 2)
 
 
+def normal_equations(sums: Sums, model: Directions, seen: Array) -> tuple[Array, Array]:
+    """Return matrix (D, D), prior not included, and right side (D,) of a model's normal equations.
+
+    seen (P + 1, P + 1): Gram matrix of the observed side; the reference's is added to what is shared.
+    """
+    shared = model.vectors @ sparse.diags(model.shared.astype(float))
+    a = model.vectors.T @ (model.vectors.T @ seen[:-1, :-1]).T
+    a = a + shared.T @ (shared.T @ sums.reference[:-1, :-1]).T
+    r = model.vectors.T @ seen[:-1, -1] + shared.T @ sums.reference[:-1, -1]
+    return np.asarray(a, np.float64), np.asarray(r, np.float64)
+
+
 def eliminate(sums: Sums, model: Directions, candidates: Directions, left_out: int | None) -> Eliminated:
     """Fit a model without a fold of the observed side (None: with all), and eliminate it from candidates.
 
     Candidates are of the observed side only.
     """
     seen = sums.without(left_out)
-    shared = model.vectors @ sparse.diags(model.shared.astype(float))
-    a = model.vectors.T @ (model.vectors.T @ seen[:-1, :-1]).T
-    a = a + shared.T @ (shared.T @ sums.reference[:-1, :-1]).T + np.diag(1 / model.std**2)
+    a, r = normal_equations(sums, model, seen)
     b = (model.vectors.T @ seen[:-1, :-1]) @ candidates.vectors
-    r = model.vectors.T @ seen[:-1, -1] + shared.T @ sums.reference[:-1, -1]
-    solved = cho_solve(cho_factor(a), np.column_stack([b, r]))
+    solved = cho_solve(cho_factor(a + np.diag(1 / model.std**2)), np.column_stack([b, r]))
     reaction = candidates.vectors.toarray() - model.vectors @ solved[:, :-1]
     own = model.vectors @ solved[:, -1]
     right = candidates.vectors.T @ (seen[:-1, -1] - seen[:-1, :-1] @ own)
@@ -133,10 +142,7 @@ def eliminate(sums: Sums, model: Directions, candidates: Directions, left_out: i
 def log_evidence(sums: Sums, model: Directions, reference_only: bool = False) -> float:
     """Return the log marginal likelihood of a model, up to a constant of the data, nats."""
     seen = 0.0 * sums.total if reference_only else sums.total
-    shared = model.vectors @ sparse.diags(model.shared.astype(float))
-    a = model.vectors.T @ (model.vectors.T @ seen[:-1, :-1]).T
-    a = a + shared.T @ (shared.T @ sums.reference[:-1, :-1]).T
-    r = model.vectors.T @ seen[:-1, -1] + shared.T @ sums.reference[:-1, -1]
+    a, r = normal_equations(sums, model, seen)
     scaled = a * np.outer(model.std, model.std) + np.eye(len(model))
     right = model.std * r
     return float(0.5 * right @ np.linalg.solve(scaled, right) - 0.5 * np.linalg.slogdet(scaled)[1])

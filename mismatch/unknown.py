@@ -15,7 +15,9 @@ from .naming import Scored, scored
 Array = NDArray[np.float64]
 
 #: Of what is left on a joint, a curve must explain this share before it is called unknown.
-_SHARE = 0.04
+_SHARE = 0.06
+#: Nats and steadiness that a curve without a name needs: it has many shapes to try.
+_EVIDENCE, _STEADY = 2 * EVIDENCE, STEADY + 0.5
 
 
 @dataclass(frozen=True)
@@ -38,6 +40,6 @@ def unknowns(
         j = s.candidate.joint
         assert j is not None
         share = float(1 - np.exp(-2 * max(s.total, 0.0) / max(effective(evidence, j), 1.0)))
-        if min(s.evidence, s.total) > EVIDENCE and s.steadiness > STEADY and share > _SHARE:
+        if min(s.evidence, s.total) > _EVIDENCE and s.steadiness > _STEADY and share > _SHARE:
             result.append(Unknown(j, share, s, "a smooth curve explains it, no name does"))
     return result
