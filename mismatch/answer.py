@@ -12,13 +12,15 @@ from ..recordings.report import AuditReport
 from ..robots import Robot
 from ..robots.model import Model
 from ..symbolic.effects import EFFECTS
+from ..symbolic.terms import CATALOGUE
+from ..symbolic.terms.forms import equation
 from .candidates import Candidate
 from .episodes import Contact, Episode, involved
 from .evidence import Evidence
 from .judging import Accepted, Judged
 from .quantities import Quantity, parameters_of, quantity
 from .refit import LeftOut, observed_runs
-from .report.wording import title
+from .report.wording import joints_text, title
 from .result import Explanation, NextMotion, Proof, Region, RuledOut, Source, Trace
 from .sharpen import Sharp, without
 from .unknown import Unknown
@@ -118,8 +120,8 @@ def _named(p: Parts, k: int, a: Accepted) -> dict[str, Any]:
         "indistinguishable_from": a.names,
         "confidence": _confidence(a),
         "parameters": numbers,
-        "equation": EFFECTS[c.effect].equation,
-        "share": {str(j): round(x, 3) for j, x in _shares(p, c, joints, a).items()},
+        "equation": equation(CATALOGUE[c.terms[0]]) if c.terms else EFFECTS[c.effect].equation,
+        "share": {str(j): round(x, 3) for j, x in _shares(p, joints, a).items()},
         "next_motion": _what_next(p, c, a),
     }
 
@@ -142,15 +144,16 @@ def _confidence(a: Accepted) -> float:
     return round(min(sure, 0.99) / (1 + 0.5 * len(a.names)), 3)
 
 
-def _shares(p: Parts, c: Candidate, joints: Sequence[int], a: Accepted) -> dict[int, float]:
+def _shares(p: Parts, joints: Sequence[int], a: Accepted) -> dict[int, float]:
     """Share of each joint's unexplained left-out variance; several findings on a joint share by evidence."""
     before, after = p.proof.before, p.proof.after
-    if c.joint is not None:
-        same = [x for x in p.judged.accepted if x.score.candidate.joint == c.joint]
-        whole = 1 - (after[c.joint] / max(before[c.joint], 1e-12)) ** 2
+    found = {}
+    for j in joints:
+        same = [x for x in p.judged.accepted if x.is_finding and x.score.candidate.joint in (None, j - 1)]
         part = a.score.evidence / max(sum(x.score.evidence for x in same), 1e-12)
-        return {c.joint + 1: float(np.clip(whole * part, 0, 1))}
-    return {j: float(np.clip(1 - (after[j - 1] / max(before[j - 1], 1e-12)) ** 2, 0, 1)) for j in joints}
+        whole = 1 - (after[j - 1] / max(before[j - 1], 1e-12)) ** 2
+        found[j] = float(np.clip(whole * part, 0, 1))
+    return found
 
 
 def _contact(p: Parts) -> list[dict[str, Any]]:
@@ -229,16 +232,10 @@ def sentence(verdict: str, findings: Sequence[Mapping[str, Any]]) -> str:
         return "These recordings cannot be used: nothing was concluded from them."
     named = [f for f in findings if f["effect"] != "unknown"]
     unknown = sorted({j for f in findings if f["effect"] == "unknown" for j in f["joints"]})
-    parts = [f"{title(f['effect'])} {_on(f['joints'])}{_numbers(f['parameters'])}" for f in named]
+    parts = [f"{title(f['effect'])} on {joints_text(f['joints'])}{_numbers(f['parameters'])}" for f in named]
     if unknown:
-        parts.append(f"something that the catalogue has no name for {_on(unknown)}")
+        parts.append(f"{title('unknown')} on {joints_text(unknown)}")
     return "The model lacks " + "; and ".join(parts) + "."
-
-
-def _on(joints: Sequence[int]) -> str:
-    if len(joints) == 1:
-        return f"on joint {joints[0]}"
-    return "on joints " + ", ".join(map(str, joints[:-1])) + f" and {joints[-1]}"
 
 
 def _numbers(parameters: Mapping[str, Quantity]) -> str:

@@ -66,14 +66,20 @@ class Judged:
     refused: tuple[tuple[Scored, str], ...]
 
 
-def judge(evidence: Evidence, progress: Callable[[str], None] = lambda _: None) -> Judged:
-    """Add one hypothesis after the other while it passes every test."""
-    model, mean = nuisance(evidence)
+def judge(
+    evidence: Evidence, progress: Callable[[str], None] = lambda _: None, known: Judged | None = None,
+    most: int = MOST,
+) -> Judged:  # fmt: skip
+    """Add one hypothesis after the other while it passes every test.
+
+    known: what stands already (not judged again); most: findings at most.
+    """
+    model, mean = (known.model, known.mean) if known else nuisance(evidence)
     skip = ("base_free",) if evidence.has_reference else ("coulomb_friction", "viscous_friction")
     accepted, refused = list[Accepted](), list[tuple[Scored, str]]()
     barred: set[Key] = set()
     tries = 0
-    while len(accepted) < MOST and tries < TRIES:
+    while len(accepted) < most and tries < TRIES:
         progress(f"hypotheses, round {len(accepted) + 1}")
         order = [s for s in ranked(evidence, model, mean, skip) if s.candidate.key not in barred]
         if not order or order[0].evidence < EVIDENCE:

@@ -27,6 +27,8 @@ BACKLOG = 1_000_000
 PATIENCE = 5000
 """Packages skipped in a row (10 s) before a client that does not read is dropped."""
 LONGEST_LINE = 65536
+#: Lines that a dashboard client may send in one piece: answering them must not hold up the clock.
+MOST_LINES = 200
 """Bytes of a line to the dashboard."""
 WAITING_PROGRAMS = 64
 STATE_EVERY = 50
@@ -131,6 +133,10 @@ class DashboardClient(Client):
         *lines, self._rest = (self._rest + data).split(b"\n")
         if len(self._rest) > LONGEST_LINE:
             self.drop("a line without an end")
+        if len(lines) > MOST_LINES:
+            self.drop(f"more than {MOST_LINES} lines at once")
+        if self.transport.is_closing():
+            return
         for line in lines:
             self.push(
                 self.server.dashboard.answer(line.decode("latin-1")).encode("latin-1", "replace") + b"\n"

@@ -1,0 +1,201 @@
+"""Known effects in real noise: added to real recordings of a UR10e, then named by explain's own steps.
+
+python benchmarks/real_noise.py RECORDINGS/unloaded_*.csv [--robot ur10e] [--repeats 2] [--seed 1]
+
+What the recordings lack by themselves is found first and kept as known. Then one effect at a time is added to
+the filtered torque of every run, at a stated rms over the residual's rms, with nonlinear values that stand on
+no grid. Right: the first new name is of the effect's family, on its joint where it has one.
+"""
+
+import argparse
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from residuum.mismatch.columns import WIDTH, Column, space_of
+from residuum.mismatch.evidence import Evidence, gather, residual
+from residuum.mismatch.judging import Judged, judge
+from residuum.mismatch.naming import reweighed
+from residuum.mismatch.refit import parameters
+from residuum.mismatch.rows import Setup, make_rows
+from residuum.recordings import Recording, read
+from residuum.recordings.audit import clean
+from residuum.robots import load_robot
+from residuum.symbolic.nominal import nominal_model
+
+Array = NDArray[np.float64]
+Added = tuple[Array, ...]  # (n, N) Nm by run
+
+SIZES = (0.10, 0.20, 0.35, 0.50)
+#: facts of the crude baseline: plain leave-one-run-out on such logs, 16 effects.
+CRUDE = {0.10: (25, 11), 0.20: (62, 12), 0.35: (90, 5), 0.50: (99, 1)}
+FAMILY = {"current_offset": "constant", "friction_asymmetry": "constant"}
+
+#: effect -> term, parameter, values off every grid.
+OWN = {
+    "friction_asymmetry": ("asymmetric", "Fa", ()),
+    "cable_spring": ("spring", "k", ()),
+    "stribeck": ("stribeck", "Fs", (("vs", 0.12),)),
+    "nonlinear_viscous (quadratic)": ("quadratic", "F2", ()),
+    "nonlinear_viscous (cubic)": ("cubic", "F3", ()),
+    "nonlinear_viscous (power 0.4)": ("power", "Fp", (("n", 0.4),)),
+    "load_dependent_friction": ("load_dependent", "mu", ()),
+    "position_dependent_friction": ("position_dependent", "A", (("n", 1.0),)),
+    "presliding_hysteresis": ("presliding", "A", (("zs", 0.008),)),
+    "velocity_lag": ("lag", "A", (("lag", 0.009),)),
+}
+#: effect -> the candidate whose directions make it.
+SHARED = ("encoder_offset", "joint_elasticity", "base_tilt", "time_delay", "rotor_inertia", "payload")
+
+
+@dataclass(frozen=True)
+class Case:
+    """An effect in the recordings. joint: 0-based, None for those that move all."""
+
+    name: str
+    joint: int | None
+    size: float
+    added: Added
+
+    @property
+    def family(self) -> str:
+        """What a right answer is called."""
+        effect = self.name.partition(" ")[0]
+        return FAMILY.get(effect, effect)
+
+
+def columns_of(recordings: Sequence[Recording], evidence: Evidence) -> dict[str, list[Array]]:
+    """Return each own effect's filtered column on all joints: effect -> (n, N) by run."""
+    own = tuple(Column(t, p, _with_width(t, v)) for t, p, v in OWN.values())
+    physics = evidence.setup.physics
+    setup = replace(evidence.setup, space=space_of(physics.regressor, own, ()), limits=None)
+    found: dict[str, list[Array]] = {name: [] for name in OWN}
+    for recording in recordings:
+        rows = make_rows(recording, _plain(setup))
+        for k, name in enumerate(OWN):
+            at = [len(setup.space.seen[j]) + k for j in range(physics.dof)]
+            found[name].append(np.stack([rows.columns[j][:, a] for j, a in enumerate(at)], axis=1))
+    return found
+
+
+def _plain(setup: Setup) -> Setup:
+    return setup
+
+
+def _with_width(term: str, values: tuple[tuple[str, float], ...]) -> tuple[tuple[str, float], ...]:
+    from residuum.symbolic.terms import CATALOGUE
+
+    return (*values, ("width", WIDTH)) if "width" in CATALOGUE[term].parameters else values
+
+
+def cases(
+    evidence: Evidence, columns: dict[str, list[Array]], left: Sequence[Array], repeats: int, seed: int
+) -> list[Case]:
+    """Draw every effect at every size, on joints by turns."""
+    rng, found = np.random.default_rng(seed), []
+    noise = _rms(left, evidence)
+    for size in SIZES:
+        for _ in range(repeats):
+            for name, by_run in columns.items():
+                j = int(rng.integers(evidence.setup.space.dof))
+                only = [np.where(np.arange(x.shape[1]) == j, x, 0.0) for x in by_run]
+                found.append(_scaled(name, j, size, only, noise, evidence))
+            for name in SHARED:
+                some = [c for c in evidence.found.each if c.effect == name]
+                c = some[int(rng.integers(len(some)))]
+                vector = evidence.found.directions.vectors[:, list(c.columns)].toarray()
+                mix = vector @ (np.abs(rng.standard_normal(len(c.columns))) + 0.2)
+                found.append(_scaled(name, c.joint, size, _torques(evidence, mix), noise, evidence))
+    return found
+
+
+def _torques(evidence: Evidence, vector: Array) -> list[Array]:
+    space = evidence.setup.space
+    return [
+        np.stack([r.columns[j] @ vector[space.indices[j]] for j in range(space.dof)], axis=1)
+        for r in evidence.runs
+    ]
+
+
+def _rms(values: Sequence[Array], evidence: Evidence) -> Array:
+    moving = [r.moving.max(axis=1) > 0.5 for r in evidence.runs]
+    joined = np.concatenate([v[m] for v, m in zip(values, moving, strict=True)])
+    return np.asarray(np.sqrt(np.mean(joined**2, axis=0)), np.float64)
+
+
+def _scaled(
+    name: str, joint: int | None, size: float, torque: Sequence[Array], noise: Array, evidence: Evidence
+) -> Case:
+    """Bring an effect to a size: the largest ratio of its rms to the residual's over the joints."""
+    ratio = float(np.max(_rms(torque, evidence) / noise))
+    return Case(name, joint, size, tuple(x * size / max(ratio, 1e-12) for x in torque))
+
+
+def answer(evidence: Evidence, known: Judged, case: Case) -> tuple[str, bool]:
+    """Return the first new name and whether its joint is right."""
+    runs = tuple(replace(r, torque=r.torque + x) for r, x in zip(evidence.runs, case.added, strict=True))
+    changed = reweighed(replace(evidence, runs=runs), known.model, known.mean)
+    judged = judge(changed, known=known, most=1)
+    found = [a for a in judged.accepted if a.is_finding]
+    if not found:
+        return "", True
+    c = found[0].score.candidate
+    return FAMILY.get(c.effect, c.effect), c.joint == case.joint or case.joint is None
+
+
+def run(paths: Sequence[Path], robot: str, repeats: int, seed: int, say: Callable[[str], None]) -> None:
+    """Print one line a size."""
+    data, digest = load_robot(robot)
+    recordings = [clean(read(p))[0] for p in paths]
+    evidence = gather(recordings, [True] * len(paths), nominal_model(data, digest, len(data.joint)), data)
+    known = judge(evidence)
+    say(
+        "known: " + ", ".join(f"{a.score.candidate.effect} {a.score.candidate.joint}" for a in known.accepted)
+    )
+    theta = parameters(evidence, known.model, known.mean)
+    left = [residual(r, evidence.setup.space, theta) for r in evidence.runs]
+    drawn = cases(evidence, columns_of(recordings, evidence), left, repeats, seed)
+    results: dict[float, list[tuple[Case, str, bool]]] = {s: [] for s in SIZES}
+    begun = time.perf_counter()
+    for k, case in enumerate(drawn, start=1):
+        results[case.size].append((case, *answer(evidence, known, case)))
+        if sys.stderr.isatty() or k % 16 == 0:
+            print(f"{k}/{len(drawn)}  {time.perf_counter() - begun:.0f} s", file=sys.stderr)
+    say(
+        "| effect rms / residual rms | n | right family | wrong family | none | joint right | crude: right, wrong |"
+    )
+    say("|---|---|---|---|---|---|---|")
+    for size, found in results.items():
+        n = len(found)
+        right = [c for c in found if c[1] == c[0].family]
+        wrong = [c for c in found if c[1] and c[1] != c[0].family]
+        joints = sum(c[2] for c in right)
+        crude = CRUDE[size]
+        say(
+            f"| {size:.2f} | {n} | {100 * len(right) / n:.0f} % | {100 * len(wrong) / n:.0f} % |"
+            f" {100 * (n - len(right) - len(wrong)) / n:.0f} % | {joints}/{len(right)} | {crude[0]} %, {crude[1]} % |"
+        )
+    for size, found in results.items():
+        for case, name, _ in found:
+            if name != case.family:
+                say(f"  {size:.2f} {case.name} joint {case.joint}: {name or 'nothing'}")
+
+
+def main() -> None:
+    """Read arguments and run."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("recordings", nargs="+", type=Path)
+    parser.add_argument("--robot", default="ur10e")
+    parser.add_argument("--repeats", type=int, default=1)
+    parser.add_argument("--seed", type=int, default=1)
+    a = parser.parse_args()
+    run(a.recordings, a.robot, a.repeats, a.seed, print)
+
+
+if __name__ == "__main__":
+    main()
