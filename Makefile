@@ -4,12 +4,13 @@ BIN := .venv/bin
 # Without a terminal pip need not say what it downloads.
 PIP := $(BIN)/python -m pip --disable-pip-version-check -q
 
-.PHONY: help setup model generated quick test lint check-generated benchmarks clean
+.PHONY: help setup model generated quick test chain lint check-generated benchmarks clean
 
 help:
 	@echo "make model       set up, then generate the UR5e's 3-joint observer"
 	@echo "make test        set up, then run all tests"
 	@echo "make quick       the tests that take seconds"
+	@echo "make chain       record, fit, explain, generate, upload, collide, freedrive, on a virtual robot"
 	@echo "make lint        ruff and mypy"
 	@echo "make generated   generate again what is checked in under generated/"
 	@echo "make benchmarks  measure against Pinocchio, SymForce and wrenfold"
@@ -34,6 +35,9 @@ quick: setup
 
 test: setup
 	$(BIN)/python -m pytest -q -n auto
+
+chain: setup
+	$(BIN)/python examples/whole_chain.py --out build/chain
 
 lint: setup
 	$(BIN)/ruff check .

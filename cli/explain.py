@@ -14,14 +14,33 @@ if TYPE_CHECKING:
     from ..mismatch import Explanation
 
 
-@click.command(epilog="Example: residuum explain run*.csv --reference healthy*.csv --robot ur5e --out answer")
+class _ManyReferences(click.Command):
+    """A command whose --reference takes all the names that follow it, up to the next option."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        spread, inside = list[str](), False
+        for arg in args:
+            if arg == "--reference":
+                inside = True
+            elif arg.startswith("-"):
+                inside = False
+                spread.append(arg)
+            else:
+                spread += ["--reference", arg] if inside else [arg]
+        return super().parse_args(ctx, spread)
+
+
+@click.command(
+    cls=_ManyReferences,
+    epilog="Example: residuum explain run*.csv --reference healthy*.csv --robot ur5e --out answer",
+)
 @click.argument("recordings", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="REC...")
 @click.option(
     "--reference",
     "references",
     multiple=True,
     type=click.Path(path_type=Path),
-    help="A recording of the healthy robot; repeatable, or several after one --reference.",
+    help="Recordings of the healthy robot: all names that follow, up to the next option.",
 )
 @click.option("--robot", help="ur3e, ur5e, ur10e, ur16e, or a robot FILE.toml.  [default: ur5e]")
 @click.option("--model", type=click.Path(path_type=Path), help="A model.toml instead of the published robot.")
@@ -59,7 +78,8 @@ def explain(
         answer = explained(Task(recordings, references, data, digest, count, known), bar.begin)
         bar.begin("writing")
         files = {
-            "findings.json": json.dumps(answer.findings, indent=1, ensure_ascii=False) + "\n",
+            "findings.json": json.dumps(answer.findings, indent=1, ensure_ascii=False, allow_nan=False)
+            + "\n",
             "model.toml": model_toml(answer.model),
             "report.html": report(answer),
         }

@@ -17,7 +17,7 @@ from ..symbolic.terms.forms import equation
 from .candidates import Candidate
 from .episodes import Contact, Episode, involved
 from .evidence import Evidence
-from .judging import Accepted, Judged
+from .judging import Accepted, Judged, effective
 from .quantities import Quantity, parameters_of, quantity
 from .refit import LeftOut, observed_runs
 from .report.wording import joints_text, title
@@ -60,7 +60,7 @@ class Parts:
 
 def compose(p: Parts) -> Explanation:
     """Return the whole answer."""
-    strengths = [(a.score.evidence, _named(p, k, a)) for k, a in enumerate(p.judged.accepted) if a.is_finding]
+    strengths = [(_strength(p, a), _named(p, k, a)) for k, a in enumerate(p.judged.accepted) if a.is_finding]
     strengths += [(_squares(p), f) for f in _contact(p)]
     findings = [f for _, f in sorted(strengths, key=lambda x: -x[0])]
     strange = _strange(p, findings)
@@ -120,7 +120,9 @@ def _named(p: Parts, k: int, a: Accepted) -> dict[str, Any]:
         "indistinguishable_from": a.names,
         "confidence": _confidence(a),
         "parameters": numbers,
-        "equation": equation(CATALOGUE[c.terms[0]]) if c.terms else EFFECTS[c.effect].equation,
+        "equation": equation(CATALOGUE[c.terms[0]])
+        if c.terms and c.terms[0] in CATALOGUE
+        else EFFECTS[c.effect].equation,
         "share": {str(j): round(x, 3) for j, x in _shares(p, joints, a).items()},
         "next_motion": _what_next(p, c, a),
     }
@@ -158,7 +160,7 @@ def _shares(p: Parts, joints: Sequence[int], a: Accepted) -> dict[int, float]:
 
 def _contact(p: Parts) -> list[dict[str, Any]]:
     """Episodes that reach several joints at once are forces from outside."""
-    if p.contact is None:
+    if p.contact is None or max(_episode_share(p, j) for j in involved(p.episodes)) < _EPISODE_SHARE:
         return []
     joints = [j + 1 for j in involved(p.episodes)]
     return [
@@ -175,6 +177,12 @@ def _contact(p: Parts) -> list[dict[str, Any]]:
             "next_motion": None,
         }
     ]
+
+
+def _strength(p: Parts, a: Accepted) -> float:
+    """Nats on the rows of the slow band, from the share that it explains there."""
+    count = effective(p.evidence, a.score.candidate.joint)
+    return -0.5 * count * float(np.log1p(-min(a.share, 0.999999)))
 
 
 def _squares(p: Parts) -> float:
@@ -195,7 +203,7 @@ def _episode_share(p: Parts, j: int) -> float:
 
 def _strange(p: Parts, findings: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """Return what stays unexplained, a joint at a time."""
-    contact = any(f["effect"] == "external_contact" for f in findings)
+    contact = p.contact is not None
     shares = {u.joint: u.share for u in p.unknowns}
     if p.episodes and not contact:
         for j in involved(p.episodes):
@@ -235,7 +243,7 @@ def sentence(verdict: str, findings: Sequence[Mapping[str, Any]]) -> str:
     parts = [f"{title(f['effect'])} on {joints_text(f['joints'])}{_numbers(f['parameters'])}" for f in named]
     if unknown:
         parts.append(f"{title('unknown')} on {joints_text(unknown)}")
-    return "The model lacks " + "; and ".join(parts) + "."
+    return "Missing from the model: " + "; and ".join(parts) + "."
 
 
 def _numbers(parameters: Mapping[str, Quantity]) -> str:

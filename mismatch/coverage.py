@@ -32,9 +32,7 @@ def cannot_show(evidence: Evidence, recordings: Sequence[Recording]) -> Lacks:
     texts = []
     standing = [j + 1 for j in range(q.shape[1]) if float(np.ptp(q[:, j])) < _TRAVEL]
     if len(standing) == q.shape[1]:
-        texts.append(
-            "friction, inertia, delay, elasticity: no joint moves; only a change of gravity torque shows"
-        )
+        texts.append("anything: no joint moves, and at rest friction hides every torque below its own level")
     elif standing:
         numbers = ", ".join(map(str, standing))
         texts.append(f"friction and inertia of joint {numbers}: it stands still here")
@@ -54,7 +52,7 @@ def cannot_show(evidence: Evidence, recordings: Sequence[Recording]) -> Lacks:
         )
     if moving < _SHORTEST:
         texts.insert(0, f"{moving:.1f} s of motion are too few to name anything; record a minute or more")
-    return Lacks(tuple(texts), moving < _SHORTEST and len(standing) < q.shape[1])
+    return Lacks(tuple(texts), moving < _SHORTEST)
 
 
 def _of_rate(rates: Sequence[float]) -> list[str]:

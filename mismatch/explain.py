@@ -55,8 +55,13 @@ def explain(task: Task, progress: Progress = lambda _: None) -> Explanation:
 
     Raises InputError for files that cannot be read or that hold fewer joints than asked.
     """
+    if task.model is not None and task.model.variant != "full":
+        raise InputError(
+            f"--model: a model of variant {task.model.variant} has no base parameters; give one of variant full"
+        )
     progress("reading and auditing")
     taken = [_read(p, r) for r, some in ((False, task.recordings), (True, task.reference)) for p in some]
+    _distinct(taken)
     sources = tuple(_source(rec, report, ref) for rec, report, ref in taken)
     nominal = task.model or nominal_model(task.robot, task.robot_hash, task.dof, _locked(taken, task))
     nominal = nominal.model_copy(update={"inputs": (*nominal.inputs, *_inputs(taken))})
@@ -127,6 +132,16 @@ def _proposal(task: Task, evidence: Evidence, judged: Judged, progress: Progress
     rivals = [judged.accepted[k].score.candidate, *judged.accepted[k].alike]
     speeds = np.array([j.max_speed for j in task.robot.joint[: evidence.setup.space.dof]])
     return next_motion(evidence, without(evidence, judged, k), rivals, speeds)
+
+
+def _distinct(taken: Sequence[tuple[Recording, AuditReport, bool]]) -> None:
+    """Refuse a recording that is given twice: what is left out would be seen after all."""
+    seen: dict[str, str] = {}
+    for recording, _, _ in taken:
+        key = recording.source.sha256 if recording.source else recording.name
+        if key in seen:
+            raise InputError(f"{recording.name}: is the same recording as {seen[key]}; leave one out")
+        seen[key] = recording.name
 
 
 def _read(path: Path, reference: bool) -> tuple[Recording, AuditReport, bool]:

@@ -22,6 +22,8 @@ Indices = NDArray[np.int64]
 BLOCK = 10.0
 #: Folds at most: blocks that follow each other are joined.
 FOLDS = 16
+#: Short recordings are cut into this many, but no shorter than a few times the residual's memory (s).
+FEWEST, SHORTEST = 5, 3.0
 #: Rows of a joint that moves in less than this share of the kernel are rest.
 _MOVES = 0.5
 #: s and rad/s: after a reversal, and when slow, friction is still building up.
@@ -104,7 +106,8 @@ def folds_of(
 def blocks(runs: Sequence[Rows], observed: Sequence[bool], side: bool) -> list[tuple[int, slice]]:
     """Return (run, rows) of each fold of the observed side, or of the reference's."""
     mine = [r for r, o in enumerate(observed) if o == side and len(runs[r])]
-    length = max(BLOCK, sum(len(runs[r]) * runs[r].step for r in mine) / FOLDS)
+    total = sum(len(runs[r]) * runs[r].step for r in mine)
+    length = max(min(BLOCK, total / FEWEST), total / FOLDS, SHORTEST)
     found = []
     for r in mine:
         parts = max(1, round(len(runs[r]) * runs[r].step / length))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from .candidates import Candidate
 from .evidence import Evidence
 from .grams import regime
-from .naming import Scored, chosen, nuisance, ranked, tested
+from .naming import Scored, chosen, nuisance, ranked, scored, tested
 from .selection import Directions
 
 Array = NDArray[np.float64]
@@ -23,8 +23,14 @@ STEADY, IMPROVED = 2.0, 0.6
 SHARE = 0.015
 #: A rival is told apart by this many nats, or by a steady lead.
 APART = 5.0
+#: A rival explains at least this share of what the best does.
+RELATED = 0.2
+#: Less than this share of a found effect's evidence, on its joints, is what that effect's own form leaves.
+SHADOW = 0.05
 #: Findings and failed attempts at most.
 MOST, TRIES = 6, 10
+#: Without a reference: fitted anyway, or only a matter of which masses are believed.
+UNSEEN = ("coulomb_friction", "viscous_friction", "drive_gain")
 #: s; current and motion may be less than this apart without anything being wrong: a cycle and a half.
 SYNCHRONOUS = 0.003
 #: What builds up with travel or late is most of the Coulomb level, or it is something else.
@@ -75,7 +81,7 @@ def judge(
     known: what stands already (not judged again); most: findings at most.
     """
     model, mean = (known.model, known.mean) if known else nuisance(evidence)
-    skip = ("base_free",) if evidence.has_reference else ("coulomb_friction", "viscous_friction")
+    skip = ("base_free",) if evidence.has_reference else UNSEEN
     accepted, refused = list[Accepted](), list[tuple[Scored, str]]()
     barred: set[Key] = set()
     tries = 0
@@ -91,19 +97,26 @@ def judge(
             continue
         test = tested(evidence, model, mean, best.candidate)
         part = share_of(evidence, test)
-        why = objection(test, part) or implausible(evidence, test)
+        why = objection(test, part) or implausible(evidence, test) or _shadow(test, accepted)
         tries += 1
         if why:
             refused.append((test, why))
             continue
-        alike, rivals = _rivals(best, order[1:12])
+        alike, rivals = _rivals(evidence, model, mean, best, order[1:])
         accepted.append(Accepted(test, alike, rivals, part))
         model = chosen(model, evidence, best.candidate)
     return Judged(tuple(accepted), model, mean, tuple(refused))
 
 
 def share_of(evidence: Evidence, test: Scored) -> float:
-    """Return the share of its joints' squared errors that a hypothesis explains, by its evidence."""
+    """Return the share of its joints' squared errors that a hypothesis explains, by its evidence.
+
+    Ripple is seen in the fast band: its share is that of its power in the slow band's noise.
+    """
+    c = test.candidate
+    if c.effect == "torque_ripple" and c.joint is not None:
+        power = float(np.sum(test.size**2)) / 2
+        return power / (power + float(evidence.scales.sigma[c.joint, 0]) ** 2)
     return float(
         1 - np.exp(-2 * max(test.evidence, 0.0) / max(effective(evidence, test.candidate.joint), 1.0))
     )
@@ -141,17 +154,39 @@ def implausible(evidence: Evidence, test: Scored) -> str:
     return ""
 
 
+def _shadow(test: Scored, accepted: Sequence[Accepted]) -> str:
+    """Return in words that a hypothesis is what a found effect's own form leaves, or nothing."""
+    c = test.candidate
+    for a in accepted:
+        first = a.score.candidate
+        if first.joint in (None, c.joint) and test.evidence < SHADOW * a.score.evidence:
+            return f"is {100 * test.evidence / a.score.evidence:.1f} % of what {first.effect} explains there"
+    return ""
+
+
 def _rivals(
-    best: Scored, others: Sequence[Scored]
+    evidence: Evidence, model: Directions, mean: Array, best: Scored, others: Sequence[Scored]
 ) -> tuple[tuple[Candidate, ...], tuple[tuple[Candidate, float, float], ...]]:
-    """Split rivals into those that do as well and those beaten: (rival, nats, steadiness of the lead)."""
+    """Split rivals into those that do as well and those beaten: (rival, nats, steadiness of the lead).
+
+    A rival acts on the same joint, or one of the two on all, and has little left to say once the best is in.
+    """
+    joint = best.candidate.joint
+    near = [
+        o for o in others
+        if o.evidence > RELATED * best.evidence and o.candidate.effect not in ("base_free", best.candidate.effect)
+        and (joint is None or o.candidate.joint in (None, joint))
+    ][:12]  # fmt: skip
+    if not near:
+        return (), ()
+    after = scored(evidence, chosen(model, evidence, best.candidate), mean, [o.candidate for o in near])
     alike, beaten = list[Candidate](), []
-    for other in others:
+    for other, left in zip(near, after, strict=True):
+        if left.evidence > 0.5 * other.evidence:
+            continue  # it explains something else
         lead = best.evidence - other.evidence
         each = best.gain - other.gain
         steady = float(np.mean(each)) / max(float(np.std(each, ddof=1)) / np.sqrt(len(each)), 1e-12)
-        if other.evidence < 0.2 * best.evidence or other.candidate.effect == best.candidate.effect:
-            continue
         if lead < APART or (lead < 0.05 * best.evidence and steady < STEADY):
             alike.append(other.candidate)
         else:

@@ -51,6 +51,8 @@ class Scored:
     @property
     def steadiness(self) -> float:
         """Mean gain of a fold over its standard error."""
+        if len(self.gain) < 2:
+            return 0.0
         spread = float(np.std(self.gain, ddof=1)) / np.sqrt(len(self.gain))
         return float(np.mean(self.gain) / max(spread, 1e-12))
 

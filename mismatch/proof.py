@@ -59,6 +59,8 @@ def _interval(left: LeftOut, moving: list[NDArray[np.bool_]]) -> Array:
     errors = np.concatenate([e[m] for e, m in zip(left.residual, moving, strict=True)])
     folds = np.concatenate([f[m] for f, m in zip(left.fold, moving, strict=True)])
     numbers = np.unique(folds)
+    if not len(numbers):
+        return np.zeros((errors.shape[1], 2))
     squares = np.array([np.sum(errors[folds == k] ** 2, axis=0) for k in numbers])
     counts = np.array([np.sum(folds == k) for k in numbers])
     drawn = np.random.default_rng(_SEED).integers(0, len(numbers), (_DRAWS, len(numbers)))

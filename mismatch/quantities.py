@@ -47,8 +47,12 @@ def parameters_of(
         "backlash": ("gap", 1.0, "rad"),
         "time_delay": ("delay", 1.0, "s"),
         "rotor_inertia": ("inertia", 1.0, "kg m^2"),
-        "drive_gain": ("error", 1.0, "1"),
     }
+    if (
+        c.effect == "drive_gain"
+    ):  # the column is -torque: (1 + error) K i = torque makes it error / (1 + error)
+        part = 1 - float(size[0])
+        return {"error": quantity(size[0] / part, std[0] / part**2, "1")}
     if c.effect in simple:
         name, sign, unit = simple[c.effect]
         return {name: quantity(sign * size[0], std[0], unit)}

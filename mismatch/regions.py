@@ -14,6 +14,8 @@ Array = NDArray[np.float64]
 UNITS = {
     "q": "rad", "qd": "rad/s", "load": "Nm", "temperature": "deg C", "since": "s", "motor": "rad", "t": "s",
 }  # fmt: skip
+#: What does not vary by this much (in UNITS) locates nothing.
+STILL = {"q": 0.02, "qd": 0.01, "load": 0.2, "temperature": 1.0, "since": 0.1, "motor": 0.5, "t": 5.0}
 _BINS = 16
 
 
@@ -32,7 +34,11 @@ def regions(
         moving = np.concatenate([r.moving[:, j] > 0.5 for r in runs])
         if moving.sum() < 100:
             continue
-        shares = {name: _explained(x[moving], error[moving]) for name, x in values.items()}
+        shares = {
+            name: _explained(x[moving], error[moving])
+            for name, x in values.items()
+            if float(np.ptp(x[moving])) > STILL[name]
+        }
         name = max(shares, key=lambda k: shares[k])
         if shares[name] < least:
             continue
@@ -59,7 +65,8 @@ def _bins(x: Array) -> NDArray[np.int64]:
 def _explained(x: Array, error: Array) -> float:
     """Left-out share of the squared error that means over bins of x explain."""
     which = _bins(x)
-    half = (np.arange(len(x)) * 8 // len(x)) % 2
+    half = (np.arange(len(x)) * 8 * _BINS // len(x)) % 2  # each bin of time has both halves
+    error = error - error.mean()
     rest = np.empty(len(x))
     for side in (0, 1):
         other = half != side

@@ -263,7 +263,7 @@ def _common(track: _Track, part: slice, setup: Setup) -> tuple[Array, Array]:
     every = max(1, int(1 / _SLOPE_RATE / max(float(np.median(np.diff(t))), 1e-6)))
     pick = np.unique(np.append(np.arange(0, len(t), every), len(t) - 1))
     q, qd = track.q[part][pick], track.qd[part][pick]
-    slope = slopes(setup.physics, setup.base, q, qd)
+    slope = slopes(setup.physics, setup.base - setup.physics.rotors, q, qd)
     flat = {k: _between(t, t[pick], v.reshape(len(pick), -1)).reshape(len(t), n, n) for k, v in slope.items()}
     load, rate = track.calm[part], track.load_rate[part]
     flank = load / (np.abs(load) + _FLANK)

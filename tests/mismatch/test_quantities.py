@@ -1,0 +1,36 @@
+"""Numbers of a finding: the peak of the evidence between grid points, and how numbers are written."""
+
+import numpy as np
+import pytest
+
+from residuum.mismatch.quantities import peak, quantity
+
+
+@pytest.mark.parametrize("true", [0.006, 0.0105, 0.02])
+def test_peak_of_a_parabola_over_the_logarithm_is_exact(true) -> None:
+    grid = [0.003, 0.006, 0.012, 0.03]
+    heights = [-0.5 * (np.log(x / true) / 0.3) ** 2 for x in grid]
+    value, std = peak(grid, heights)
+    if 0.0045 < true < 0.02:
+        assert value == pytest.approx(true, rel=1e-9)
+        assert std == pytest.approx(0.3 * true, rel=1e-9)
+    else:
+        assert grid[1] * 0.99 <= value <= grid[-1]
+
+
+@pytest.mark.parametrize(("heights", "best"), [([5, 3, 1, 0], 0.01), ([0, 1, 3, 5], 0.08)])
+def test_at_the_border_nothing_is_claimed(heights, best) -> None:
+    assert peak([0.01, 0.02, 0.04, 0.08], heights) == (best, None)
+
+
+def test_two_points_have_no_peak() -> None:
+    assert peak([0.3, 1.0], [4.0, 7.0]) == (1.0, None)
+
+
+@pytest.mark.parametrize("std", [None, np.nan, np.inf])
+def test_an_unknown_deviation_is_null(std) -> None:
+    assert quantity(1.23456789, std, "kg") == {"value": 1.23457, "std": None, "unit": "kg"}
+
+
+def test_deviations_keep_three_digits() -> None:
+    assert quantity(2.0, 0.0123456, "kg")["std"] == 0.0123
