@@ -57,7 +57,7 @@ def explain(task: Task, progress: Progress = lambda _: None) -> Explanation:
     """
     if task.model is not None and task.model.variant != "full":
         raise InputError(
-            f"--model: a model of variant {task.model.variant} has no base parameters; give one of variant full"
+            f"--model: variant {task.model.variant} has no base parameters; give a model of variant full"
         )
     progress("reading and auditing")
     taken = [_read(p, r) for r, some in ((False, task.recordings), (True, task.reference)) for p in some]

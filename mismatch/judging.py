@@ -19,8 +19,10 @@ Key = tuple[str, int | None]
 EVIDENCE = 10.0
 #: Mean gain of a fold over its standard error; share of folds that improve.
 STEADY, IMPROVED = 2.0, 0.6
+#: Or nearly all folds improve and no fold alone makes the size: where some tell far more than others.
+ALWAYS, CONSISTENT = 0.75, 4.0
 #: A named effect explains at least this share of what its joint's model leaves: less is of no use to anyone.
-SHARE = 0.015
+SHARE = 0.01
 #: A rival is told apart by this many nats, or by a steady lead.
 APART = 5.0
 #: A rival explains at least this share of what the best does.
@@ -135,7 +137,8 @@ def objection(test: Scored, part: float) -> str:
     """Return in words why a hypothesis is not believed, or nothing."""
     if test.evidence < EVIDENCE or test.total < EVIDENCE:
         return f"evidence {min(test.evidence, test.total):.1f} nats, {EVIDENCE:g} asked"
-    if test.steadiness < STEADY:
+    consistent = test.improved >= ALWAYS and test.consistency >= CONSISTENT
+    if test.steadiness < STEADY and not consistent:
         return f"not steady over the recordings (t = {test.steadiness:.1f})"
     if test.improved < IMPROVED:
         return f"improves only {100 * test.improved:.0f} % of the left-out parts"
@@ -174,7 +177,8 @@ def _rivals(
     joint = best.candidate.joint
     near = [
         o for o in others
-        if o.evidence > RELATED * best.evidence and o.candidate.effect not in ("base_free", best.candidate.effect)
+        if o.evidence > RELATED * best.evidence
+        and o.candidate.effect not in ("base_free", best.candidate.effect)
         and (joint is None or o.candidate.joint in (None, joint))
     ][:12]  # fmt: skip
     if not near:

@@ -15,7 +15,7 @@ from .candidates import Candidate
 from .columns import SHORT
 from .evidence import Evidence, residual
 from .grams import Scales, folds_of, scales_of
-from .selection import Directions, Sums, eliminate, log_evidence
+from .selection import Directions, Eliminated, Sums, eliminate, log_evidence
 
 Array = NDArray[np.float64]
 
@@ -34,7 +34,8 @@ BARE = 1e-4
 class Scored:
     """A hypothesis at its best nonlinear value. gain (F,): nats that it adds to a left-out fold's likelihood.
 
-    evidence: what it adds on all folds at once; size (k,): its coefficients; std (k,).
+    evidence: what it adds on all folds at once; size (k,): its coefficients; std (k,). consistency: the
+    coefficients over their spread when one fold after the other is left out (jackknife; Efron 1982).
     """
 
     candidate: Candidate
@@ -42,6 +43,7 @@ class Scored:
     evidence: float
     size: Array
     std: Array
+    consistency: float = 0.0
 
     @property
     def total(self) -> float:
@@ -145,8 +147,20 @@ def scored(evidence: Evidence, model: Directions, mean: Array, some: Sequence[Ca
         full = whole.evidence(columns)
         size, covariance = whole.solve(columns)
         gain = np.array([full - o.evidence(columns) for o in out])
-        found.append(Scored(c, gain, full, size, np.sqrt(np.diag(covariance))))
+        same = _consistency(whole, out, columns)
+        found.append(Scored(c, gain, full, size, np.sqrt(np.diag(covariance)), same))
     return found
+
+
+def _consistency(whole: Eliminated, out: Sequence[Eliminated], columns: Sequence[int]) -> float:
+    """Return one over the jackknife's standard error of a hypothesis' size, in its own metric."""
+    if len(out) < 2:
+        return 0.0
+    size, _ = whole.solve(columns)
+    metric = whole.schur[np.ix_(columns, columns)] @ size
+    each = np.array([o.solve(columns)[0] @ metric for o in out]) / max(float(size @ metric), 1e-300)
+    spread = float(np.sum((each - each.mean()) ** 2)) * (len(each) - 1) / len(each)
+    return float(1 / np.sqrt(max(spread, 1e-12)))
 
 
 def ranked(evidence: Evidence, model: Directions, mean: Array, skip: Sequence[str] = ()) -> list[Scored]:
