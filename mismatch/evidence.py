@@ -55,7 +55,9 @@ def gather(
     base_std = _base_std(model, physics.regressor.base)
     plain_own = (Column("coulomb", "Fc", (("width", WIDTH),)), Column("viscous", "Fv"), Column("offset", "c"))
     none = np.zeros((physics.dof, 2))
-    plain = Setup(physics, space_of(physics.regressor, plain_own, ()), gains, physics.published, none)
+    known = tuple(t for t in model.term if t.name not in ("coulomb", "viscous"))
+    space = space_of(physics.regressor, plain_own, ())
+    plain = Setup(physics, space, gains, physics.published, none, known=known)
     progress("first fit")
     first = [make_rows(r, plain) for r in recordings]
     sides = list(observed)
@@ -65,7 +67,7 @@ def gather(
     own = (*own_columns(gear), *curve_columns())
     setup = Setup(
         physics, space_of(physics.regressor, own, common_names(physics.dof)), gains, base, friction,
-        ranges(q, qd, load, heat),
+        ranges(q, qd, load, heat), known,
     )  # fmt: skip
     progress("columns of every hypothesis")
     runs = [make_rows(r, setup) for r in recordings]

@@ -28,7 +28,7 @@ APART = 5.0
 #: A rival explains at least this share of what the best does.
 RELATED = 0.2
 #: Less than this share of a found effect's evidence, on its joints, is what that effect's own form leaves.
-SHADOW = 0.05
+SHADOW = 0.1
 #: Findings and failed attempts at most.
 MOST, TRIES = 6, 10
 #: Without a reference: fitted anyway, or only a matter of which masses are believed.

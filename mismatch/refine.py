@@ -169,7 +169,7 @@ def _terms(
                 at = next(space.own_index(c.joint, k) for k, x in enumerate(space.own) if x.term == "offset")
                 add("offset", c.joint, {}, {"c": (full[at], std[at])})
         _shared_term(evidence, a, full, std, add)
-    return tuple(sorted(found.values(), key=lambda t: t.joint))
+    return tuple(sorted((*evidence.setup.known, *found.values()), key=lambda t: t.joint))
 
 
 def _shared_term(evidence: Evidence, a: Accepted, full: Array, std: Mapping[int, float], add) -> None:  # type: ignore[no-untyped-def]

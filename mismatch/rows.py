@@ -16,6 +16,7 @@ from ..codegen.columns import columns as term_columns
 from ..identify.kernel import Filter, Kernel, batches, segments
 from ..identify.rows import GAP, REST, SAMPLES_PER_PERIOD
 from ..recordings import Recording, speeds
+from ..robots.model import TermData
 from ..symbolic.terms import CATALOGUE
 from .columns import WIDTH, Space
 from .fast import Fast, fast_band
@@ -43,7 +44,7 @@ class Setup:
     """What rows are made with. gains (N,) Nm/A; base (B,): parameters of loads and slopes.
 
     friction (N, 2): Coulomb and viscous, of the torque that is delayed or scaled; limits: ranges of the
-    flexible curve (None: it is left out).
+    flexible curve (None: it is left out). known: terms whose torque is taken off what was measured.
     """
 
     physics: Physics
@@ -52,6 +53,7 @@ class Setup:
     base: Array
     friction: Array
     limits: Ranges | None = None
+    known: tuple[TermData, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,7 @@ class _Track:
     time: Array
     q: Array
     qd: Array
-    current: Array
+    measured: Array
     temperature: Array
     load: Array
     calm: Array
@@ -121,8 +123,7 @@ def _fast(track: _Track, setup: Setup, kernel: Kernel, origin: float) -> Fast | 
     if not own:
         return None
     columns = [_column(track, slice(None), c.term, c.parameter, c.values) for c in own]
-    torque = track.current * setup.gains
-    found = fast_band(track.time, torque, columns, track.qd, track.since, kernel.cutoff)
+    found = fast_band(track.time, track.measured, columns, track.qd, track.since, kernel.cutoff)
     return replace(found, time=tuple(t + origin for t in found.time))
 
 
@@ -152,10 +153,23 @@ def _track(recording: Recording, setup: Setup) -> tuple[_Track, Kernel, float]:
     temperature = np.full_like(q, 30.0) if hot is None else hot[:, :n]
     load, calm, load_rate, motor = _load(time, q, qd, setup, kernel, rate)
     track = _Track(
-        time, q, qd, recording.current[:, :n], temperature, load, calm, load_rate, motor, _since(time, qd),
-        np.empty((len(q), n, 0)),
+        time, q, qd, recording.current[:, :n] * setup.gains, temperature, load, calm, load_rate, motor,
+        _since(time, qd), np.empty((len(q), n, 0)),
     )  # fmt: skip
+    track = replace(track, measured=track.measured - _known(track, setup))
     return replace(track, held=_held(track, setup)), kernel, rate
+
+
+def _known(track: _Track, setup: Setup) -> Array:
+    """Torque (T, N) of the terms that the nominal model has beside Coulomb and viscous friction."""
+    found = np.zeros_like(track.q)
+    for term in setup.known:
+        entry, j = CATALOGUE[term.name], term.joint - 1
+        values = {n: v for n, v in term.parameters.items() if n not in entry.linear_in}
+        for name in entry.linear_in:
+            column = _column(track, slice(None), term.name, name, tuple(values.items()))
+            found[:, j] += term.parameters.get(name, 0.0) * column[:, j]
+    return found
 
 
 def _load(
@@ -319,7 +333,7 @@ def _filtered(track: _Track, part: slice, at: Array, setup: Setup, kernel: Kerne
     beta = physics.regressor.values("beta", q=q, qd=qd)
     own = _own(track, part, setup)
     states = [q, qd, track.load[part], track.temperature[part], np.minimum(track.since[part], 9.0)]
-    plain = [beta, own.reshape(count, -1), track.current[part] * setup.gains, np.abs(qd) > REST, *states]
+    plain = [beta, own.reshape(count, -1), track.measured[part], np.abs(qd) > REST, *states]
     shared_moved, shared_kept = (
         _common(track, part, setup) if setup.space.common else (np.empty((count, n, 0)),) * 2
     )

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from .candidates import Candidate
 from .episodes import Episode
 from .evidence import Evidence
-from .judging import EVIDENCE, STEADY, Judged, effective
+from .judging import EVIDENCE, SHADOW, STEADY, Judged, effective
 from .naming import Scored, scored
 
 Array = NDArray[np.float64]
@@ -40,6 +40,11 @@ def unknowns(
         j = s.candidate.joint
         assert j is not None
         share = float(1 - np.exp(-2 * max(s.total, 0.0) / max(effective(evidence, j), 1.0)))
+        named = max(
+            (a.score.evidence for a in judged.accepted if a.score.candidate.joint in (None, j)), default=0.0
+        )
+        if s.evidence < SHADOW * named:
+            continue
         if min(s.evidence, s.total) > _EVIDENCE and s.steadiness > _STEADY and share > _SHARE:
             result.append(Unknown(j, share, s, "a smooth curve explains it, no name does"))
     return result

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from plotly.graph_objects import Figure as PlotlyFigure
 
-from residuum.mismatch import wording
+from residuum.mismatch.report import wording
 from residuum.mismatch.report.figures import CLOUD_POINTS, LINE_POINTS, thin_cloud, thin_line
 from residuum.mismatch.report.page import VERDICTS, report
 from residuum.mismatch.report.variables import readings
