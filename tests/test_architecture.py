@@ -20,7 +20,7 @@ ALLOWED = {
     "urscript": set(),
     "identify": {"codegen", "recordings", "robots", "symbolic", "urscript"},
     "virtual": {"codegen", "recordings", "robots", "urscript"},
-    "driver": {"identify", "recordings", "robots", "urscript"},
+    "driver": {"identify", "recordings", "robots", "templates", "urscript"},
     "collisions": {"codegen", "identify", "recordings", "robots", "symbolic", "urscript", "virtual"},
     "cli": {
         "codegen",
