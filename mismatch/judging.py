@@ -92,7 +92,7 @@ def judge(
         order = [s for s in ranked(evidence, model, mean, skip) if s.candidate.key not in barred]
         if not order or order[0].evidence < EVIDENCE:
             break
-        best = order[0]
+        best = _likelier(order)
         barred.add(best.candidate.key)
         if why := implausible(evidence, best):
             refused.append((best, why))
@@ -104,10 +104,22 @@ def judge(
         if why:
             refused.append((test, why))
             continue
-        alike, rivals = _rivals(evidence, model, mean, best, order[1:])
+        alike, rivals = _rivals(evidence, model, mean, best, [o for o in order if o is not best])
         accepted.append(Accepted(test, alike, rivals, part))
         model = chosen(model, evidence, best.candidate)
     return Judged(tuple(accepted), model, mean, tuple(refused))
+
+
+def _likelier(order: Sequence[Scored]) -> Scored:
+    """Return the best hypothesis, but a load where a changed link explains no more: links rarely change."""
+    best = order[0]
+    if best.candidate.effect == "link_inertial":
+        for other in order[1:]:
+            if other.candidate.effect == "payload" and best.evidence - other.evidence < max(
+                APART, 0.05 * best.evidence
+            ):
+                return other
+    return best
 
 
 def share_of(evidence: Evidence, test: Scored) -> float:

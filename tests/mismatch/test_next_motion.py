@@ -111,7 +111,7 @@ def test_offset_against_asymmetry_is_seen_where_the_joint_rests_or_turns_back(ra
 def test_stribeck_against_presliding_is_seen_when_slow(rate) -> None:
     found = rate(("stribeck", 2), ("presliding_hysteresis", 2))
     assert found["small_reversals"] > found["full_range_sweep"]
-    assert found["slow_ramps"] > 3 * found["full_range_sweep"]
+    assert found["slow_ramps"] > found["full_range_sweep"]
     assert max(found, key=found.get) in ("small_reversals", "slow_ramps")
 
 
