@@ -99,7 +99,11 @@ def judge(
             continue
         test = tested(evidence, model, mean, best.candidate)
         part = share_of(evidence, test)
-        why = objection(test, part) or implausible(evidence, test) or _shadow(test, accepted)
+        why = (
+            objection(test, part)
+            or implausible(evidence, test)
+            or _shadow(test, accepted, evidence.setup.space.dof)
+        )
         tries += 1
         if why:
             refused.append((test, why))
@@ -169,12 +173,15 @@ def implausible(evidence: Evidence, test: Scored) -> str:
     return ""
 
 
-def _shadow(test: Scored, accepted: Sequence[Accepted]) -> str:
+def _shadow(test: Scored, accepted: Sequence[Accepted], joints: int) -> str:
     """Return in words that a hypothesis is what a found effect's own form leaves, or nothing."""
     c = test.candidate
     for a in accepted:
         first = a.score.candidate
-        if first.joint in (None, c.joint) and test.evidence < SHADOW * a.score.evidence:
+        part = (
+            SHADOW if first.joint is not None else SHADOW / joints
+        )  # what acts on all has its evidence from all
+        if first.joint in (None, c.joint) and test.evidence < part * a.score.evidence:
             return f"is {100 * test.evidence / a.score.evidence:.1f} % of what {first.effect} explains there"
     return ""
 

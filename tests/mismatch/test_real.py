@@ -74,8 +74,3 @@ def test_the_known_load_is_in_the_interval(with_load) -> None:
     assert high - low < 0.6 * MASS  # an interval that says something
     centre = first["parameters"]["centre_of_mass"]
     assert all(abs(x) < 0.3 for x in centre["value"])
-
-
-def test_the_load_alone_differs_from_the_unloaded_runs(with_load) -> None:
-    """Beside the load nothing gets a name; what stays without one is said to be unknown."""
-    assert [x for x in named(with_load)[1:] if x[0] != "unknown"] == []
