@@ -11,6 +11,7 @@ import click
 from ..errors import InputError
 from ..urscript import Diagnostic, Version
 from ..urscript import check as check_text
+from .files import read_script
 
 
 @click.command(epilog="Example:  residuum check collision_guard.script --target-version 5.11")
@@ -30,21 +31,12 @@ def check(file: Path, target_version: str, as_json: bool) -> None:
     """
     try:
         Version.parse(target_version)
-        diagnostics = check_text(_read(file), target_version)
+        diagnostics = check_text(read_script(file), target_version)
     except InputError as error:
         click.echo(f"residuum check: {error}", err=True)
         raise SystemExit(2) from None
     click.echo(_as_json(diagnostics) if as_json else _as_text(file, diagnostics), nl=as_json)
     raise SystemExit(1 if any(d.severity == "error" for d in diagnostics) else 0)
-
-
-def _read(file: Path) -> str:
-    try:
-        return file.read_bytes().decode("utf-8")
-    except OSError as error:
-        raise InputError(f"{file}: {error.strerror or error}; give a readable script file") from None
-    except UnicodeDecodeError as error:
-        raise InputError(f"{file}: byte {error.start} is no text; give a URScript source file") from None
 
 
 def _as_text(file: Path, diagnostics: list[Diagnostic]) -> str:

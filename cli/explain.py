@@ -8,6 +8,7 @@ import click
 
 from ..errors import InputError
 from .files import write_tree
+from .options import ROBOTS
 from .run import stages
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ class _ManyReferences(click.Command):
     type=click.Path(path_type=Path),
     help="Recordings of the healthy robot: all names that follow, up to the next option.",
 )
-@click.option("--robot", help="ur3e, ur5e, ur10e, ur16e, or a robot FILE.toml.  [default: ur5e]")
+@click.option("--robot", help=f"{ROBOTS}  [default: ur5e]")
 @click.option("--model", type=click.Path(path_type=Path), help="A model.toml instead of the published robot.")
 @click.option("--dof", type=click.IntRange(1, 6), help="Moving joints; the rest is rigid.  [default: all]")
 @click.option("--out", required=True, type=click.Path(path_type=Path, file_okay=False), help="Folder.")

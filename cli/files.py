@@ -1,4 +1,4 @@
-"""Writing results so that nothing half-written is left behind and nothing old is lost."""
+"""Reading scripts; writing results so that nothing half-written is left behind and nothing old is lost."""
 
 import os
 import shutil
@@ -7,6 +7,27 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from ..errors import InputError
+
+
+def read_script(file: Path, option: str = "") -> str:
+    """Return the text of a URScript file as it stands.
+
+    option: what the file was given with, such as --motion. Raises InputError, naming both, when the file
+    cannot be read or is no text.
+    """
+    named = f"{option} {file}" if option else f"{file}"
+    try:
+        return file.read_bytes().decode("utf-8")
+    except OSError as error:
+        raise InputError(f"{named}: {error.strerror or error}; give a readable script file") from None
+    except UnicodeDecodeError as error:
+        raise InputError(f"{named}: byte {error.start} is no text; give a URScript source file") from None
+
+
+def check_picture(path: Path | None, option: str = "--plot") -> None:
+    """Raise InputError, naming the option, when a name does not end as a picture's that can be drawn."""
+    if path and path.suffix.lower() not in (".png", ".svg", ".pdf"):
+        raise InputError(f"{option} {path}: give a name that ends in .png, .svg or .pdf")
 
 
 def write_tree(folder: Path, files: Mapping[str, str], option: str = "--out") -> None:

@@ -7,7 +7,8 @@ import click
 import numpy as np
 
 from ..errors import InputError
-from .files import write_file
+from .files import check_picture, write_file
+from .options import robot_option
 from .run import stages
 
 if TYPE_CHECKING:
@@ -18,9 +19,7 @@ if TYPE_CHECKING:
 
 @click.command(epilog="Example: residuum fit run*.csv --robot ur5e --out ur5e.toml --term stribeck:2,3")
 @click.argument("recordings", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="REC...")
-@click.option(
-    "--robot", default="ur5e", show_default=True, help="ur3e, ur5e, ur10e, ur16e, or a robot FILE.toml."
-)
+@robot_option
 @click.option(
     "--dof",
     type=click.IntRange(1, 6),
@@ -120,8 +119,7 @@ def fit(
     from ..identify.workflow import Task, run
     from ..robots import load_robot
 
-    if plot and plot.suffix.lower() not in (".png", ".svg", ".pdf"):
-        raise InputError(f"--plot {plot}: give a name that ends in .png, .svg or .pdf")
+    check_picture(plot)
     if bool(loaded) != (payload is not None):
         raise InputError(
             "--loaded and --payload go together: the recordings with the load, and its mass in kg"

@@ -10,6 +10,7 @@ import numpy as np
 from ..errors import InputError
 from .files import write_tree
 from .guard_options import guard_options, read_guard_options
+from .options import robot_option
 from .run import run, stages
 
 
@@ -27,9 +28,7 @@ def _numbers(text: str, option: str, count: int | None = None) -> tuple[float, .
 
 @click.command(epilog="Example: gen-model --dof 3 --robot ur5e --out generated")
 @click.option("--dof", type=int, help="Moving joints, 1 to 6; the rest is rigid.  [required without --model]")
-@click.option(
-    "--robot", default="ur5e", show_default=True, help="ur3e, ur5e, ur10e, ur16e, or a robot FILE.toml."
-)
+@robot_option
 @click.option(
     "--model", "model_file", type=click.Path(path_type=Path), help="Generate from a model.toml instead."
 )

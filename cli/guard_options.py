@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from ..errors import InputError
+from .files import read_script
 
 if TYPE_CHECKING:
     from ..codegen.options import Options
@@ -85,16 +85,7 @@ def read_guard_options(motion: Path | None, polyscope: str | None, **choices: An
     options = Options(polyscope=polyscope or "", **choices)
     if motion is None:
         return options
-    found = read_motion(_text(motion), str(motion), options.target)
+    found = read_motion(read_script(motion, "--motion"), str(motion), options.target)
     for remark in found.remarks:
         click.echo(f"warning: {remark}", err=True)
     return Options(polyscope=polyscope or "", motion=found, **choices)
-
-
-def _text(file: Path) -> str:
-    try:
-        return file.read_bytes().decode("utf-8")
-    except OSError as error:
-        raise InputError(f"--motion {file}: {error.strerror or error}; give a readable file") from None
-    except UnicodeDecodeError as error:
-        raise InputError(f"--motion {file}: byte {error.start} is no text; give URScript") from None

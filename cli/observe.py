@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import click
 import numpy as np
 
-from ..errors import InputError
-from .files import write_file
+from .files import check_picture, write_file
 from .run import stages
 
 if TYPE_CHECKING:
@@ -43,8 +42,7 @@ def observe(recording: Path, model: Path, out: Path, plot: Path | None, gain: fl
     from ..recordings.audit import clean
     from ..recordings.report import describe
 
-    if plot and plot.suffix.lower() not in (".png", ".svg", ".pdf"):
-        raise InputError(f"--plot {plot}: give a name that ends in .png, .svg or .pdf")
+    check_picture(plot)
     with stages(4) as bar:
         bar.begin("generating")
         module = load_observer(model)

@@ -5,9 +5,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import tomli_w
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import Environment
 
 from ..robots.model import Model
+from ..templates import renderer
 from .functions import listings
 from .guard import guard_scripts
 from .inplace import in_place
@@ -124,16 +125,14 @@ def urscripts(symbolic: SymbolicModel, found: Mapping[str, Listing], options: Op
 
 
 def _environment() -> Environment:
-    environment = Environment(
-        loader=PackageLoader("residuum.templates", ""), undefined=StrictUndefined, keep_trailing_newline=True
+    return renderer(
+        {
+            "float_py": NUMPY.number,
+            "float_c": C.number,
+            "float_ur": URSCRIPT.number,
+            "float_md": lambda x: f"{x:.6g}",
+        }
     )
-    environment.filters |= {
-        "float_py": NUMPY.number,
-        "float_c": C.number,
-        "float_ur": URSCRIPT.number,
-        "float_md": lambda x: f"{x:.6g}",
-    }
-    return environment
 
 
 def _shared_context(symbolic: SymbolicModel) -> dict[str, object]:

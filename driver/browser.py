@@ -12,9 +12,8 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from types import TracebackType
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
-
 from ..errors import InputError
+from ..templates import renderer
 from .monitor import Reading
 
 ADDRESS = "127.0.0.1"
@@ -180,12 +179,5 @@ def _numbers(values: Iterable[float]) -> list[float | None]:
 
 
 def _page(host: str, joints: int) -> bytes:
-    environment = Environment(
-        loader=PackageLoader("residuum.templates", ""),
-        undefined=StrictUndefined,
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    page = environment.get_template("monitor/page.html.jinja")
+    page = renderer(html=True).get_template("monitor/page.html.jinja")
     return page.render(host=host, joints=joints, window=WINDOW).encode()

@@ -60,28 +60,31 @@ def torque_ripple(scene: Scene) -> Drawn:
 
 def tooth_defect(scene: Scene) -> Drawn:
     """Draw a bad tooth where the joint passes."""
-    joint = scene.joint()
-    at, width = scene.passed(joint), float(scene.rng.uniform(0.02, 0.06))
-    level = scene.level(joint)
-    return Drawn(
-        "outside.tooth_defect", (joint,), 0.7 * level, 0.02 * level, 4.0 * level,
-        lambda torque, _k: {
-            "outside": {"tooth_defect": (ToothDefect(joint=joint, torque=torque, at=at, width=width),)}
-        },
-        lambda torque: {"torque": torque, "at": at, "width": width},
-    )  # fmt: skip
+    return _near_an_angle(scene, "tooth_defect", ToothDefect, (0.02, 0.06), (0.7, 0.02, 4.0))
 
 
 def loose_cable(scene: Scene) -> Drawn:
     """Draw noise over a part of the joint's way."""
+    return _near_an_angle(scene, "loose_cable", LooseCable, (0.2, 0.5), (0.3, 0.01, 2.0))
+
+
+def _near_an_angle(
+    scene: Scene,
+    name: str,
+    effect: type[ToothDefect] | type[LooseCable],
+    widths: tuple[float, float],
+    sizes: tuple[float, float, float],
+) -> Drawn:
+    """Draw what acts near an angle only.
+
+    widths: least and greatest, rad. sizes: start, low and high, in the joint's usual Coulomb levels.
+    """
     joint = scene.joint()
-    at, width = scene.passed(joint), float(scene.rng.uniform(0.2, 0.5))
-    level = scene.level(joint)
+    at, width = scene.passed(joint), float(scene.rng.uniform(*widths))
+    start, low, high = (size * scene.level(joint) for size in sizes)
     return Drawn(
-        "outside.loose_cable", (joint,), 0.3 * level, 0.01 * level, 2.0 * level,
-        lambda torque, _k: {
-            "outside": {"loose_cable": (LooseCable(joint=joint, torque=torque, at=at, width=width),)}
-        },
+        f"outside.{name}", (joint,), start, low, high,
+        lambda torque, _k: {"outside": {name: (effect(joint=joint, torque=torque, at=at, width=width),)}},
         lambda torque: {"torque": torque, "at": at, "width": width},
     )  # fmt: skip
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from ..errors import InputError
 from ..robots import Robot
-from .drive import Amplify, Disturbance, ElasticDrive, RigidDrive
+from .drive import Amplify, Disturbance, ElasticDrive, Motor, RigidDrive
 from .effects import (
     Amplifier,
     LoadDependentFriction,
@@ -95,12 +95,12 @@ def make_drives(
         friction.start(random.uniform(-0.6, 0.6))  # where it came to rest before
         disturbances = _disturbances(plant, number, joint.gear, dt, random)
         amplify = _amplify(_on(plant.outside.amplifier, number))
-        gear = _gear(plant, number)
+        motor, gear = Motor(gain, rotor, friction, disturbances, amplify), _gear(plant, number)
         if gear is None:
-            drives.append(RigidDrive(gain, rotor, friction, disturbances, amplify))
+            drives.append(RigidDrive(motor))
         else:
             fast = dt * sqrt(gear[0] * (1.0 / rotor + 1.0 / float(links[k]))) > STIFF
-            drives.append(ElasticDrive(gain, rotor, friction, disturbances, amplify, gear, dt, float(fast)))
+            drives.append(ElasticDrive(motor, gear, dt, float(fast)))
     return drives
 
 

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from commands import gen_model
 
 from residuum.robots import load_robot
 
@@ -20,11 +21,6 @@ FILES = {
     "model.toml",
 }
 UR5E = Path(__file__).resolve().parents[2] / "robots" / "ur5e.toml"
-
-
-def gen_model(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", "from residuum.cli.gen_model import main; main()", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd)
 
 
 def refused(done: subprocess.CompletedProcess[str]) -> str:

@@ -1,10 +1,8 @@
 """residuum observe: on what is known exactly, on real recordings, on bad ones."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
+from commands import residuum
 
 from residuum.codegen.generate import generate
 from residuum.codegen.load import load_text
@@ -12,11 +10,6 @@ from residuum.identify.observation import observe
 from residuum.recordings import Recording
 from residuum.robots import load_robot
 from residuum.symbolic.nominal import nominal_model
-
-
-def residuum(*arguments: object) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", "from residuum.cli.main import main; main()", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True)
 
 
 @pytest.fixture(scope="module")

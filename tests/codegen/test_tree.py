@@ -2,11 +2,10 @@
 
 import importlib
 import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from commands import gen_model
 
 from residuum.codegen.check import TOLERANCE, worst_disagreement
 from residuum.codegen.generate import generate, model_toml
@@ -19,15 +18,9 @@ ROOT = Path(__file__).resolve().parents[2]
 REMEDY = "run `make generated` and commit what changed"
 
 
-def gen_model(*arguments: str, seed: str = "0") -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", "from residuum.cli.gen_model import main; main()", *arguments]
-    environment = os.environ | {"PYTHONHASHSEED": seed}
-    return subprocess.run(command, capture_output=True, text=True, env=environment, check=True)
-
-
 @pytest.mark.parametrize("dof", [3, 6])
 def test_checked_in_tree_is_current(dof, tmp_path) -> None:
-    gen_model("--dof", str(dof), "--out", str(tmp_path))
+    gen_model("--dof", dof, "--out", tmp_path, check=True)
     fresh = {p.name: p.read_bytes() for p in (tmp_path / f"ur5e_dof{dof}").iterdir()}
     folder = ROOT / "generated" / f"ur5e_dof{dof}"
     kept = {p.name: p.read_bytes() for p in folder.iterdir() if p.is_file()}
@@ -39,7 +32,8 @@ def test_checked_in_tree_is_current(dof, tmp_path) -> None:
 def test_output_does_not_depend_on_the_hash_seed(tmp_path) -> None:
     trees = []
     for seed in ("1", "2"):
-        gen_model("--dof", "4", "--robot", "ur10e", "--out", str(tmp_path / seed), seed=seed)
+        machine = os.environ | {"PYTHONHASHSEED": seed}
+        gen_model("--dof", 4, "--robot", "ur10e", "--out", tmp_path / seed, env=machine, check=True)
         trees.append({p.name: p.read_bytes() for p in (tmp_path / seed / "ur10e_dof4").iterdir()})
     assert trees[0] == trees[1]
 

@@ -1,17 +1,7 @@
 """`residuum collide`: what it writes, and one line for bad input."""
 
-import subprocess
-import sys
-
 import pytest
-
-RUN = "import sys; from residuum.cli.main import main; sys.argv[0] = 'residuum'; main()"
-
-
-def collide(*arguments: str, seconds: float = 60.0):
-    return subprocess.run(
-        [sys.executable, "-c", RUN, "collide", *arguments], capture_output=True, text=True, timeout=seconds
-    )
+from commands import residuum
 
 
 @pytest.mark.parametrize(
@@ -26,14 +16,14 @@ def collide(*arguments: str, seconds: float = 60.0):
     ],
 )
 def test_bad_input_is_one_line(arguments, reason) -> None:
-    done = collide(*arguments)
+    done = residuum("collide", *arguments, timeout=60)
     assert done.returncode == 2
     assert reason in done.stderr and done.stderr.count("\n") == 1
 
 
 @pytest.mark.slow
 def test_a_quick_campaign(tmp_path) -> None:
-    done = collide("--out", str(tmp_path / "out"), "--quick", "--workers", "1", seconds=600.0)
+    done = residuum("collide", "--out", tmp_path / "out", "--quick", "--workers", 1, timeout=600)
     assert done.returncode == 0, done.stderr
     assert "18 runs: 18 detected after contact, 0 alarms before it" in done.stdout
     assert done.stdout.count("at most half") == 2

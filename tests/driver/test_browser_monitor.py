@@ -5,7 +5,6 @@ import json
 import signal
 import socket
 import subprocess
-import sys
 import threading
 import time
 from contextlib import contextmanager
@@ -14,6 +13,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import browser as chromium
+import commands
 import numpy as np
 import pytest
 from virtual_robot import Robot, fixed_ports, serving
@@ -26,7 +26,6 @@ from residuum.errors import InputError
 from residuum.virtual import Plant
 
 OBSERVER = Path(residuum.__file__).parent / "generated" / "ur5e_dof6" / "observer.py"
-CALL = "from residuum.cli.run import run; from residuum.cli.monitor import monitor; run(monitor, 'residuum monitor')"
 KEYS = {
     *("time", "q", "external", "threshold", "temperature", "over", "detections"),
     *("latest", "packages", "lost"),
@@ -180,7 +179,7 @@ def test_close_frees_the_port_and_ends_the_streams() -> None:
 
 
 def test_command_prints_the_address_and_ctrl_c_ends_it() -> None:
-    command = [sys.executable, "-c", CALL, "--host", "127.0.0.1", "--browser", "--port", "0"]
+    command = [*commands.RESIDUUM, "monitor", "--host", "127.0.0.1", "--browser", "--port", "0"]
     with fixed_ports(), serving():
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         line = process.stdout.readline()
@@ -193,8 +192,7 @@ def test_command_prints_the_address_and_ctrl_c_ends_it() -> None:
 
 
 def test_a_port_without_the_browser_is_one_line() -> None:
-    command = [sys.executable, "-c", CALL, "--host", "127.0.0.1", "--port", "8070"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    done = commands.residuum("monitor", "--host", "127.0.0.1", "--port", "8070", timeout=60)
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
     assert "--browser" in done.stderr
 

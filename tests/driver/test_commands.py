@@ -1,19 +1,10 @@
 """The four commands as a user types them, on the real ports."""
 
-import subprocess
-import sys
-
 import pytest
+from commands import residuum
 from virtual_robot import fixed_ports, serving
 
 from residuum.recordings import read
-
-CALL = "from residuum.cli.run import run; from residuum.cli.{0} import {0}; run({0}, 'residuum {0}')"
-
-
-def residuum(verb: str, *arguments: str) -> subprocess.CompletedProcess:
-    command = [sys.executable, "-c", CALL.format(verb), *arguments]
-    return subprocess.run(command, capture_output=True, text=True, timeout=60)
 
 
 @pytest.fixture(scope="module")

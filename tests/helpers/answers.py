@@ -1,8 +1,6 @@
 """What an answer of `residuum explain` has to look like, whatever it says."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +9,6 @@ from residuum.symbolic.effects import EFFECTS
 VERDICTS = ("nothing_missing", "explained", "partly_explained", "unexplained", "bad_data")
 NAMES = {*EFFECTS, "data_fault", "unknown"}
 FILES = {"findings.json", "model.toml", "report.html"}
-
-
-def residuum(*arguments: object, **options: Any) -> subprocess.CompletedProcess[str]:
-    """Run a command as a process."""
-    command = [sys.executable, "-c", "from residuum.cli.main import main; main()", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, **options)
 
 
 def findings(folder: Path) -> dict[str, Any]:

@@ -5,20 +5,19 @@ import contextlib
 import fcntl
 import socket
 import subprocess
-import sys
 import tempfile
 import threading
 import time
 from pathlib import Path
 
 import pytest
+from commands import RESIDUUM
 
 from residuum.robots import load_robot
 from residuum.virtual.server import Controller, Ports, Server
 
 FREE = Ports(0, 0, 0, 0, 0)
 FIXED = (30004, 29999, 30001, 30002, 30003)
-SERVE = "import sys; from residuum.cli.run import run; from residuum.cli.serve import serve; run(serve, 'residuum serve')"
 
 
 class Robot:
@@ -61,6 +60,20 @@ class Robot:
         self.until(lambda: any(words in line for line in self.said), seconds)
 
 
+@pytest.fixture
+def robot():
+    """A robot of its own for every test."""
+    running = Robot()
+    yield running
+    running.close()
+
+
+@pytest.fixture
+def controller():
+    """The controller alone, without ports."""
+    return Controller(load_robot("ur5e")[0])
+
+
 def taken(port: int) -> bool:
     with socket.socket() as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -96,7 +109,7 @@ def fixed_ports():
 def serving(*arguments: str):
     """`residuum serve` as a process; yields it once it listens."""
     process = subprocess.Popen(
-        [sys.executable, "-c", SERVE, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [*RESIDUUM, "serve", *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     try:
         process.greeting = process.stdout.readline()

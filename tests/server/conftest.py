@@ -1,17 +1,5 @@
-import pytest
-from virtual_robot import Robot
+"""The fixtures of the virtual controller's tests."""
 
-from residuum.robots import load_robot
-from residuum.virtual.server import Controller
+from virtual_robot import controller, robot
 
-
-@pytest.fixture
-def robot():
-    running = Robot()
-    yield running
-    running.close()
-
-
-@pytest.fixture
-def controller():
-    return Controller(load_robot("ur5e")[0])
+__all__ = ["controller", "robot"]

@@ -2,11 +2,10 @@
 
 import signal
 import socket
-import subprocess
-import sys
 
 import pytest
-from virtual_robot import SERVE, fixed_ports, serving
+from commands import residuum
+from virtual_robot import fixed_ports, serving
 
 
 def test_ctrl_c_ends_it_cleanly() -> None:
@@ -32,8 +31,6 @@ def test_a_taken_port_is_one_line_and_two() -> None:
     ],
 )
 def test_bad_options_are_one_line(arguments, reason) -> None:
-    done = subprocess.run(
-        [sys.executable, "-c", SERVE, *arguments], capture_output=True, text=True, timeout=30
-    )
+    done = residuum("serve", *arguments, timeout=30)
     assert (done.returncode, done.stdout) == (2, "")
     assert reason in done.stderr and done.stderr.count("\n") == 1

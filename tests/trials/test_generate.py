@@ -1,11 +1,10 @@
 """Outlines, draws and cases: shares, sizes, and that the same seed gives the same files."""
 
-import subprocess
-import sys
 from collections import Counter
 
 import numpy as np
 import pytest
+from commands import residuum
 
 from residuum.errors import InputError
 from residuum.recordings import read
@@ -93,10 +92,9 @@ def test_a_case_hides_what_it_says() -> None:
 
 
 def test_the_command_says_what_is_wrong_in_one_line(tmp_path) -> None:
-    command = [sys.executable, "-c", "from residuum.cli.main import main; main()", "trial"]
-    command += ["--cases", "2", "--seed", "1", "--out", str(tmp_path / "new")]
+    command = ("trial", "--cases", 2, "--seed", 1, "--out", tmp_path / "new")
     for options, remedy in ((["--seconds", "20", "12"], "shorter"), (["--stage", "answer"], "generate")):
-        done = subprocess.run([*command, *options], capture_output=True, text=True)
+        done = residuum(*command, *options)
         assert done.returncode == 2 and remedy in done.stderr and done.stderr.count("\n") == 1
 
 

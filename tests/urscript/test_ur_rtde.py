@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib.util
-import socket
 import subprocess
 import sys
 import time
@@ -12,6 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from virtual_robot import fixed_ports, taken
 
 from residuum.urscript import Dialect, IdleWorld, Machine, check, parse_program
 
@@ -20,22 +20,12 @@ FAKE = Path(__file__).with_name("fake_controller.py")
 CLIENT = "import os, rtde_control; rtde_control.RTDEControlInterface('127.0.0.1'); os._exit(0)"
 
 
-def _free(port: int) -> bool:
-    with socket.socket() as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind(("127.0.0.1", port))
-        except OSError:
-            return False
-    return True
-
-
 @contextmanager
 def _controller(version: str, file: Path) -> Iterator[None]:
     process = subprocess.Popen([sys.executable, str(FAKE), version, str(file)])
     try:
         for _ in range(100):
-            if not any(map(_free, PORTS)):
+            if all(map(taken, PORTS)):
                 break
             time.sleep(0.05)
         yield
@@ -49,10 +39,8 @@ def control(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     """Version and text of the control script for it."""
     if importlib.util.find_spec("rtde_control") is None:
         pytest.skip("ur_rtde is not installed")
-    if busy := [port for port in PORTS if not _free(port)]:
-        pytest.skip(f"ports {busy} are taken; ur_rtde uses no others")
     file = tmp_path_factory.mktemp("ur_rtde") / "control.script"
-    with _controller(request.param, file):
+    with fixed_ports(), _controller(request.param, file):
         subprocess.run([sys.executable, "-c", CLIENT], timeout=20, check=False, capture_output=True)
     if not file.exists():
         pytest.fail("ur_rtde uploaded nothing to the fake controller")
