@@ -139,7 +139,7 @@ def _scaled(
 def answer(evidence: Evidence, known: Judged, case: Case) -> tuple[str, bool]:
     """Return the first new name and whether its joint is right."""
     runs = tuple(replace(r, torque=r.torque + x) for r, x in zip(evidence.runs, case.added, strict=True))
-    changed = reweighed(replace(evidence, runs=runs), known.model, known.mean)
+    changed = reweighed(replace(evidence, runs=runs), known.model)
     judged = judge(changed, known=known, most=1)
     found = [a for a in judged.accepted if a.is_finding]
     if not found:
@@ -157,7 +157,7 @@ def run(paths: Sequence[Path], robot: str, repeats: int, seed: int, say: Callabl
     say(
         "known: " + ", ".join(f"{a.score.candidate.effect} {a.score.candidate.joint}" for a in known.accepted)
     )
-    theta = parameters(evidence, known.model, known.mean)
+    theta = parameters(evidence, known.model)
     left = [residual(r, evidence.setup.space, theta) for r in evidence.runs]
     drawn = cases(evidence, columns_of(recordings, evidence), left, repeats, seed)
     results: dict[float, list[tuple[Case, str, bool]]] = {s: [] for s in SIZES}

@@ -17,7 +17,9 @@ class Verdict:
 
     outcome: of the first name when something of the catalogue was hidden; else clean, abstained or named.
     wrong: any name that nothing hidden has. joints: whether the right name sits where it should (None: not
-    scored). found: how many of the hidden effects were named. errors: relative, by parameter.
+    scored). found: how many of the hidden effects were named. errors: relative, by parameter. size, visible:
+    effect rms over residual rms, of all of it and of what the baseline of such a case leaves. confidence: of
+    the first name.
     """
 
     case: str
@@ -27,24 +29,31 @@ class Verdict:
     rate: int
     effects: tuple[str, ...]
     size: float
+    visible: float
     outcome: Outcome
     first: str
     wrong: bool
     joints: bool | None
     found: int
     errors: dict[str, float]
+    confidence: float | None = None
     seconds: float | None = None
     failure: str = ""
 
     @property
     def bin(self) -> float:
         """The nominal size that the case counts for."""
-        return SIZES[sum(self.size >= edge for edge in EDGES)]
+        return nominal(self.size)
 
     @property
     def right(self) -> bool:
         """Whether the first name is that of something hidden."""
         return self.outcome == "right"
+
+
+def nominal(size: float) -> float:
+    """Return the nominal size that a size counts for."""
+    return SIZES[sum(size >= edge for edge in EDGES)]
 
 
 def judge(truth: dict[str, Any], answer: dict[str, Any], seconds: float | None = None) -> Verdict:
@@ -64,15 +73,23 @@ def judge(truth: dict[str, Any], answer: dict[str, Any], seconds: float | None =
         rate=truth["rate"],
         effects=tuple(e["effect"] for e in truth["effects"]),
         size=max((e["size"] for e in truth["effects"]), default=0.0),
+        visible=_visible(truth),
         outcome=outcome,
         first=first["effect"] if first else "nothing",
         wrong=wrong,
         joints=_joints(named[0], match) if match else None,
         found=sum(any(_is_right(f, [e]) for f in named) for e in hidden),
         errors=errors(match, named[0]) if match else {},
+        confidence=named[0]["confidence"] if named else None,
         seconds=seconds,
         failure=answer.get("error", ""),
     )
+
+
+def _visible(truth: dict[str, Any]) -> float:
+    """Return the size that is left beside what is fitted anyway: without a reference, Coulomb and viscous."""
+    shares = truth["beside_friction"] if not truth["reference"] else [1.0] * len(truth["ratio"])
+    return float(max((r * s for r, s in zip(truth["ratio"], shares, strict=False)), default=0.0))
 
 
 def _outcome(

@@ -4,13 +4,14 @@ import csv
 import io
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .files import read_json, write_json, write_text
-from .judging import SIZES, Verdict, judge
+from .judging import SIZES, Verdict, judge, nominal
 from .sealing import check
 from .shares import Share
 
@@ -54,6 +55,7 @@ def summary(verdicts: list[Verdict]) -> dict[str, Any]:
         "size_without_reference": {
             _size(s): [v for v in hidden if v.bin == s and not v.reference] for s in SIZES
         },
+        "visible": {_size(s): [v for v in hidden if nominal(v.visible) == s] for s in SIZES},
         "reference": {t: [v for v in hidden if v.reference == (t == "with")] for t in ("with", "without")},
         "rate": {str(r): [v for v in hidden if v.rate == r] for r in (125, 500)},
         "robot": _by(hidden, lambda v: v.robot),
@@ -71,6 +73,7 @@ def summary(verdicts: list[Verdict]) -> dict[str, Any]:
         "outside": _nothing([v for v in verdicts if v.kind == "outside"]),
         "confusion": _confusion(verdicts),
         "parameters": _parameters(hidden),
+        "confidence": _calibration(verdicts),
         "seconds": _seconds(verdicts),
         "failures": {v.case: v.failure for v in verdicts if v.failure},
     }
@@ -80,11 +83,12 @@ def cases_csv(verdicts: Iterable[Verdict]) -> str:
     """Return one line a case: truth, size, answer, outcome."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    names = ["case", "kind", "robot", "rate", "reference", "truth", "size", "first", "outcome"]
+    names = ["case", "kind", "robot", "rate", "reference", "truth", "size", "visible", "first", "outcome"]
     writer.writerow([*names, "any_wrong", "joints", "found", "seconds", "failure"])
     for v in verdicts:
         joints = "" if v.joints is None else v.joints
-        row = [v.case, v.kind, v.robot, v.rate, v.reference, "+".join(v.effects), f"{v.size:.3f}", v.first]
+        sizes = [f"{v.size:.3f}", f"{v.visible:.3f}"]
+        row = [v.case, v.kind, v.robot, v.rate, v.reference, "+".join(v.effects), *sizes, v.first]
         writer.writerow([*row, v.outcome, v.wrong, joints, v.found, v.seconds, v.failure])
     return text.getvalue()
 
@@ -121,6 +125,15 @@ def _confusion(verdicts: list[Verdict]) -> dict[str, dict[str, int]]:
     for v in verdicts:
         found["+".join(v.effects) or "clean"][v.first] += 1
     return {truth: dict(found[truth].most_common()) for truth in sorted(found)}
+
+
+def _calibration(verdicts: list[Verdict]) -> dict[str, Any]:
+    """Return, by confidence of the first name, how often it was right; names of clean robots are wrong."""
+    edges, rows = (0.0, 0.8, 0.95, 1.0), {}
+    for low, high in pairwise(edges):
+        inside = [v for v in verdicts if v.confidence is not None and low < v.confidence <= high]
+        rows[f"{low:g}-{high:g}"] = Share(sum(v.right for v in inside), len(inside)).data()
+    return rows
 
 
 def _parameters(verdicts: list[Verdict]) -> dict[str, Any]:

@@ -13,6 +13,7 @@ TITLES = {
     "size": "By size (effect rms / residual rms)",
     "size_with_reference": "By size, with reference",
     "size_without_reference": "By size, without reference",
+    "visible": "By visible size (without reference: what Coulomb and viscous friction leave of the effect)",
     "reference": "By reference",
     "rate": "By rate, Hz",
     "robot": "By robot",
@@ -32,6 +33,7 @@ def report(score: dict[str, Any]) -> str:
         _nothing("Clean robots", score["clean"]),
         _nothing("Outside the catalogue", score["outside"]),
         _parameters(score["parameters"]),
+        _confidence(score["confidence"]),
         _confusion(score["confusion"]),
         _seconds(score["seconds"]),
         _failures(score["failures"]),
@@ -78,6 +80,12 @@ def _parameters(parameters: dict[str, Any]) -> str:
     for name, row in [*parameters["by_name"].items(), ("all", parameters["all"])]:
         error = "-" if row["median"] is None else f"{100 * row['median']:.1f} %"
         lines.append(_line([name, str(row["n"]), error]))
+    return "\n".join(lines) + "\n"
+
+
+def _confidence(rows: dict[str, dict[str, Any]]) -> str:
+    lines = ["## Confidence of the first name\n", _line(["confidence", "right"]), _line(["---"] * 2)]
+    lines += [_line([name, _share(row)]) for name, row in rows.items()]
     return "\n".join(lines) + "\n"
 
 

@@ -16,6 +16,7 @@ from residuum.trials.tables import compare, report
 
 def truth(*effects, kind="catalogue", case="001", **fields):
     base = {"case": case, "kind": kind, "robot": "ur5e", "rate": 500, "reference": True}
+    base |= {"ratio": [0.1, 0.5], "beside_friction": [1.0, 0.2]}
     return base | {"effects": list(effects)} | fields
 
 
@@ -29,6 +30,7 @@ def finding(name="stribeck", joints=(2,), rivals=(), **parameters):
         "effect": name,
         "joints": list(joints),
         "indistinguishable_from": list(rivals),
+        "confidence": 0.9,
         "parameters": values,
     }
 
@@ -111,6 +113,12 @@ def test_sizes_fall_into_the_nearest_bin(size, bin) -> None:
     assert judge(truth(effect(size=size)), answer()).bin == bin
 
 
+def test_what_is_visible_depends_on_the_reference() -> None:
+    assert judge(truth(effect()), answer()).visible == 0.5
+    assert judge(truth(effect(), reference=False), answer()).visible == pytest.approx(0.1)
+    assert judge(truth(kind="clean", ratio=[0.0], beside_friction=[]), answer()).visible == 0.0
+
+
 def test_wilson_as_published() -> None:
     """Newcombe 1998, table I: 81/263 is 0.2553-0.3662, 0/20 is 0-0.1611."""
     assert Share(81, 263).interval == pytest.approx((0.2553, 0.3662), abs=5e-5)
@@ -142,6 +150,7 @@ def test_the_score_is_written_with_all_its_tables(tmp_path) -> None:
     assert found["clean"]["all"]["named"]["share"] == 0.5
     assert found["catalogue"]["size"]["0.5"]["right"]["count"] == 1
     assert found["parameters"]["all"]["median"] == pytest.approx(0.1)
+    assert found["confidence"]["0.8-0.95"]["share"] == 0.5
     assert len((tmp_path / "cases.csv").read_text().splitlines()) == 4
     text = (tmp_path / "score.md").read_text()
     assert "| stribeck | stribeck 1 |" in text and "100 % (1/1; 21-100)" in text
