@@ -94,6 +94,14 @@ class Regressor:
             full[:, row, column] = values[:, k]
         return full
 
+    def combined(self, part: str, parameters: Array, **inputs: Array) -> Array:
+        """Return a part at some parameters (B or K,): its columns times them, summed up, (T, N)."""
+        values = self.values(part, **inputs)
+        found = np.zeros((len(values), self.dof))
+        for k, (row, column) in enumerate(self.parts[part].places):
+            found[:, row] += values[:, k] * parameters[column]
+        return found
+
 
 def regressor(arm: Arm, terms: Sequence[TermColumn] = ()) -> Regressor:
     """Differentiate the arm's energies by their base parameters and the terms by their linear ones."""

@@ -129,6 +129,24 @@ def segments(time: Array, longest_step: float) -> list[slice]:
     return [slice(a, b) for a, b in pairwise(edges) if b > a]
 
 
+def portions(
+    time: Array, stretch: slice, kernel: Kernel, step: float, size: int, times: int = 1
+) -> Iterator[tuple[Array, slice]]:
+    """Give instants `step` s apart in a stretch with the samples that they need, `size` instants at a time.
+
+    times: how often the kernel acts one after the other.
+    """
+    behind, ahead = times * kernel.support, times * kernel.ahead
+    first, last = time[stretch][0] + behind, time[stretch][-1] - ahead
+    at = np.arange(first, last + 1e-9, step)
+    for start in range(0, len(at), size):
+        some = at[start : start + size]
+        left = max(stretch.start, int(np.searchsorted(time, some[0] - behind, "left")) - 1)
+        right = min(stretch.stop, int(np.searchsorted(time, some[-1] + ahead, "right")) + 1)
+        if right - left > 2:
+            yield some, slice(left, right)
+
+
 def batches(time: Array, at: Array, kernel: Kernel) -> Iterator[tuple[slice, slice]]:
     """Pair a few instants of `at` with the samples that their kernels reach."""
     for start in range(0, len(at), _TOGETHER):

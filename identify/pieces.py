@@ -1,7 +1,7 @@
 """Recordings as clean pieces of bounded length, placed where the work is done."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -87,11 +87,7 @@ def prepare(item: tuple[int, bool, Recording]) -> Piece:
     run, first, recording = item
     good, report = clean(recording, with_clock=first)
     report.require()
-    lean = replace(
-        good, others={}, dropped=(), target_q=None, target_qdd=None, target_current=None,
-        target_moment=None, actual_TCP_force=None,
-    )  # fmt: skip
-    return Piece(run, lean, tuple(f.text for f in report.findings if f.severity == "dropped"))
+    return Piece(run, good.lean(), tuple(f.text for f in report.findings if f.severity == "dropped"))
 
 
 def describe(piece: Piece) -> tuple[int, float, float, int, tuple[str, ...]]:

@@ -5,7 +5,6 @@ same low-pass, and the derivative of p acts on the kernel (see kernel.py). Rows 
 the cutoff; what lies closer together carries no more information.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
@@ -16,7 +15,7 @@ from numpy.typing import NDArray
 from ..codegen.regressors import Regressor
 from ..errors import InputError
 from ..recordings import Recording, speeds
-from .kernel import Filter, Kernel, batches, segments
+from .kernel import Filter, Kernel, batches, portions, segments
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -112,13 +111,13 @@ def make_rows(recording: Recording, recipe: Recipe) -> Rows:
             f"{recording.name}: has no joint_temperatures; leave the temperature term out or record them"
         )
     time = recording.timestamp - recording.timestamp[0]
-    rate = 1 / float(np.median(np.diff(time)))
+    rate, times = recording.rate, 1 if recipe.form == "momentum" else 2
     kernel = recipe.kernel(rate)
     step = 1 / (4 * kernel.cutoff)
     pieces: list[_Piece] = []
     starts, count = [], 0
     for stretch in segments(time, GAP / rate):
-        for k, (at, part) in enumerate(_portions(time, stretch, kernel, recipe.form, step)):
+        for k, (at, part) in enumerate(portions(time, stretch, kernel, step, _PORTION, times)):
             if k == 0:
                 starts.append(count)
             motion = recording.take(part)
@@ -129,22 +128,6 @@ def make_rows(recording: Recording, recipe: Recipe) -> Rows:
 
 #: Instants (n,), torque and moving share (n, 2 N), columns.
 _Piece = tuple[Array, Array, list[Array]]
-
-
-def _portions(
-    time: Array, stretch: slice, kernel: Kernel, form: Form, step: float
-) -> Iterator[tuple[Array, slice]]:
-    """Give instants of rows in a stretch with the samples that they need, some hundred rows at a time."""
-    times = 1 if form == "momentum" else 2
-    behind, ahead = times * kernel.support, times * kernel.ahead
-    first, last = time[stretch][0] + behind, time[stretch][-1] - ahead
-    at = np.arange(first, last + 1e-9, step)
-    for start in range(0, len(at), _PORTION):
-        some = at[start : start + _PORTION]
-        left = max(stretch.start, int(np.searchsorted(time, some[0] - behind, "left")) - 1)
-        right = min(stretch.stop, int(np.searchsorted(time, some[-1] + ahead, "right")) + 1)
-        if right - left > 2:
-            yield some, slice(left, right)
 
 
 def _momentum_form(
@@ -209,11 +192,7 @@ def terms(motion: Recording, q: Array, qd: Array, recipe: Recipe) -> Array:
 
 def gravity(recipe: Recipe, q: Array) -> Array:
     """Return the gravity torque (T, N) in Nm of the recipe's base parameters: minus beta at rest."""
-    found = np.zeros_like(q)
-    values = recipe.regressor.values("beta", q=q, qd=np.zeros_like(q))
-    for k, (row, column) in enumerate(recipe.regressor.parts["beta"].places):
-        found[:, row] -= values[:, k] * recipe.base[column]
-    return found
+    return -recipe.regressor.combined("beta", np.array(recipe.base), q=q, qd=np.zeros_like(q))
 
 
 def _placed(recipe: Recipe, rigid: list[tuple[str, Array, float]], term_values: Array) -> list[Array]:

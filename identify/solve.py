@@ -79,16 +79,23 @@ def prior(model: Model, recipe: Recipe, loose: Mapping[str, float] | None = None
     """
     names = recipe.regressor.base
     values = np.array([model.base[n].value for n in names])
+    std = base_widths(model, names)
+    for name, width in (loose or {}).items():
+        std[names.index(name)] = width
+    friction = [PRIOR_FRICTION * model.joint[c.joint - 1].max_torque for c in recipe.regressor.terms]
+    return Prior(np.concatenate([values, np.zeros(len(friction))]), np.concatenate([std, friction]))
+
+
+def base_widths(model: Model, names: Sequence[str]) -> Array:
+    """Return standard deviations (B,) of published base parameters, as stated in this file."""
+    values = np.array([model.base[n].value for n in names])
     kinds = ["moment" if model.base[n].unit == "kg m" else "inertia" for n in names]
     links = [int(n.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ")) for n in names]
     std = np.empty(len(names))
     for k in range(len(names)):
         alike = [abs(values[j]) for j in range(len(names)) if kinds[j] == kinds[k] and links[j] >= links[k]]
         std[k] = max(PRIOR_SHARE * abs(values[k]), PRIOR_FLOOR * max(alike), 1e-3)
-    for name, width in (loose or {}).items():
-        std[names.index(name)] = width
-    friction = [PRIOR_FRICTION * model.joint[c.joint - 1].max_torque for c in recipe.regressor.terms]
-    return Prior(np.concatenate([values, np.zeros(len(friction))]), np.concatenate([std, friction]))
+    return std
 
 
 def solve(sums: Sequence[JointMoments], noise: Noise, problem: Problem, constrained: bool = True) -> Estimate:

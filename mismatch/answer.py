@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import norm
 
 from ..recordings import Recording
 from ..recordings.report import AuditReport
@@ -27,8 +28,6 @@ from .unknown import Unknown
 
 Array = NDArray[np.float64]
 
-#: Effects that move every joint by their nature.
-_ALL = ("payload", "base_tilt", "time_delay", "external_contact")
 #: Of a joint's left-out squares, for episodes to be worth a word.
 _EPISODE_SHARE = 0.1
 
@@ -63,7 +62,7 @@ def compose(p: Parts) -> Explanation:
     strengths = [(_strength(p, a), _named(p, k, a)) for k, a in enumerate(p.judged.accepted) if a.is_finding]
     strengths += [(_squares(p), f) for f in _contact(p)]
     findings = [f for _, f in sorted(strengths, key=lambda x: -x[0])]
-    strange = _strange(p, findings)
+    strange = _strange(p)
     findings += strange
     verdict = _verdict(findings, strange)
     answer = {
@@ -104,8 +103,7 @@ def _named(p: Parts, k: int, a: Accepted) -> dict[str, Any]:
     numbers: dict[str, Quantity] = dict(
         parameters_of(
             p.evidence,
-            without(p.evidence, p.judged, k),
-            p.judged.mean,
+            without(p.judged, k),
             a.score,
             p.nominal,
             sharp.std if sharp else None,
@@ -140,8 +138,6 @@ def _joints(p: Parts, c: Candidate) -> list[int]:
 
 def _confidence(a: Accepted) -> float:
     """Probability of the name: odds of the evidence, tempered by steadiness, split with its rivals."""
-    from scipy.stats import norm
-
     sure = float(norm.cdf(a.score.steadiness)) * float(1 - np.exp(-max(a.score.total, 0.0) / 10))
     return round(min(sure, 0.99) / (1 + 0.5 * len(a.names)), 3)
 
@@ -201,7 +197,7 @@ def _episode_share(p: Parts, j: int) -> float:
     return float(min(inside / max(total, 1e-12), 1.0))
 
 
-def _strange(p: Parts, findings: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+def _strange(p: Parts) -> list[dict[str, Any]]:
     """Return what stays unexplained, a joint at a time."""
     contact = p.contact is not None
     shares = {u.joint: u.share for u in p.unknowns}

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from ..symbolic.terms import CATALOGUE
-from .columns import GRIDS, ORDERS, SHORT, TERMS, WIDTH, Column, Space
+from .columns import GRIDS, ORDERS, SHORT, SOFT, TERMS, WIDTH, Column, Space
 from .flexible import names as curve_names
 from .physics import Physics
 from .rows import DELAYS
@@ -48,6 +48,7 @@ def own_columns(gear: float) -> tuple[Column, ...]:
         tried = [((name, v),) for name, values in grid for v in values] or [()]
         width = (("width", WIDTH),) if "width" in entry.parameters else ()
         found += [Column(term, p, values + width) for values in tried for p in entry.linear_in]
+    found += [Column("coulomb", "Fc", (("width", w),)) for w in SOFT]
     found += [Column("ripple", p, (("n", k * gear),)) for k in ORDERS for p in ("A", "B")]
     return tuple(found)
 
@@ -68,7 +69,7 @@ _PLAIN = {
     "gain": "drive_gain", "asymmetric": "friction_asymmetry", "offset": "current_offset",
 }  # fmt: skip
 #: Whose coefficient cannot be negative when nothing was known of it before.
-_POSITIVE = ("presliding", "lag", "load_dependent", "stribeck")
+_POSITIVE = ("presliding", "lag", "load_dependent", "stribeck", "spring")
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,7 @@ def candidates(
     for j in range(space.dof):
         groups: dict[tuple[str, tuple[tuple[str, float], ...]], list[int]] = {}
         for k, c in enumerate(space.own):
-            if c.term != "curve":
+            if c.term != "curve" and not c.soft:
                 at = add(unit[space.own_index(j, k)], own_std[j, k])
                 groups.setdefault((c.term, c.values), []).append(at)
         for (term, values), columns in groups.items():
@@ -121,6 +122,9 @@ def candidates(
             add(unit[space.common_index(f"{x}{k + 1}")], common_std["delay"]) for x in ("delay", "reversal")
         ]
         each.append(Candidate("time_delay", None, tuple(both), (("around", delay),)))
+    if "frozen" in space.common:
+        at = add(unit[space.common_index("frozen")], common_std["frozen"])
+        each.append(Candidate("frozen_joint_coupling", None, (at,), positive=True))
     _inertial(space, physics, base_std, add, each)
     curve = []
     for j in range(space.dof):

@@ -30,6 +30,16 @@ class Column:
         """The nonlinear values by name."""
         return dict(self.values)
 
+    @property
+    def soft(self) -> bool:
+        """Whether its sign turns gently: how a gear's friction passes through zero speed is no finding."""
+        return self.value.get("width") in SOFT
+
+    @property
+    def usual(self) -> bool:
+        """Whether it is of the friction that every baseline has: Coulomb with a sharp sign, and viscous."""
+        return self.term in BASELINE and not self.soft
+
 
 #: Nonlinear values that are tried: half a decade apart or less, over the catalogue's plausible range.
 GRIDS: Mapping[tuple[str, str], tuple[float, ...]] = {
@@ -47,8 +57,12 @@ TERMS = (
     "load_dependent", "temperature_dependent", "position_dependent", "presliding", "lag",
 )  # fmt: skip
 
+#: Terms that are fitted whatever is found.
+BASELINE = ("coulomb", "viscous")
 #: rad/s; width of the smooth sign: far below the terms' default, whose tail reaches far into slow motion.
 WIDTH = 1e-4
+#: rad/s; widths at which Coulomb friction may change its sign instead, real or simulated.
+SOFT = (0.002, 0.01, 0.03)
 #: rad; presliding shorter than this is every gear's, and no finding.
 SHORT = 0.002
 #: Ripple: orders per motor turn.

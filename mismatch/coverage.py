@@ -36,7 +36,12 @@ def cannot_show(evidence: Evidence, recordings: Sequence[Recording]) -> Lacks:
     elif standing:
         numbers = ", ".join(map(str, standing))
         texts.append(f"friction and inertia of joint {numbers}: it stands still here")
-    texts += _of_rate([1 / float(np.median(np.diff(r.timestamp))) for r in recordings])
+    if (frozen := evidence.setup.frozen) is not None:
+        numbers, fewer, all_of = ", ".join(map(str, frozen.joints)), q.shape[1], frozen.whole[0].dof
+        texts.append(
+            f"joint {numbers}: a model of {fewer} joints holds it still, but it moves; give --dof {all_of}"
+        )
+    texts += _of_rate([r.rate for r in recordings])
     if any(r.qd is None for r in recordings):
         texts.append(
             "friction next to standstill to better than a sample: speeds were not recorded, only derived"

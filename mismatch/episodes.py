@@ -38,7 +38,6 @@ class Episode:
     strength: Array
     mean: Array  # (N,) mean residual, Nm
     rms: Array  # (N,)
-    against: Array  # (N,) share of the residual's size that goes with the direction of motion
 
 
 def episodes(
@@ -81,12 +80,10 @@ def _joined(loud: NDArray[np.bool_], step: float) -> list[slice]:
 
 
 def _episode(run: int, part: slice, rows: Rows, left: Array, scaled: Array) -> Episode:
-    size = np.abs(left[part]).sum(axis=0)
-    along = (left[part] * np.sign(rows.qd[part]) * (rows.moving[part] > 0.5)).sum(axis=0)
     return Episode(
         run, part, (float(rows.time[part.start]), float(rows.time[part.stop - 1])),
         np.mean(scaled[part] ** 2, axis=0), left[part].mean(axis=0),
-        np.sqrt(np.mean(left[part] ** 2, axis=0)), along / np.maximum(size, 1e-9),
+        np.sqrt(np.mean(left[part] ** 2, axis=0)),
     )  # fmt: skip
 
 

@@ -2,20 +2,24 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
+from ..identify.solve import base_widths
 from ..recordings import Recording
 from ..robots import Robot
 from ..robots.model import Model
 from .candidates import Candidates, candidates, curve_columns, own_columns
-from .columns import WIDTH, Column, Space, space_of
+from .columns import BASELINE, WIDTH, Column, Space, space_of
 from .flexible import ranges
+from .frozen import SHARE, frozen_of, widths
 from .grams import Fold, Scales, equal_scales, folds_of, scales_of, whole
 from .physics import physics_of
 from .rows import Rows, Setup, common_names, make_rows
+from .selection import Sums
 
 Array = NDArray[np.float64]
 
@@ -43,6 +47,16 @@ class Evidence:
         """Whether there are recordings to compare with."""
         return not all(self.observed)
 
+    @cached_property
+    def mean(self) -> Array:
+        """Prior mean (P,) of all parameters: published base parameters, and nothing else."""
+        return _lifted(self.setup.physics.published, self.setup.space)
+
+    @cached_property
+    def sums(self) -> Sums:
+        """Gram matrices of both sides about the prior mean."""
+        return Sums(self.folds, self.setup.space, self.mean)
+
 
 def gather(
     recordings: Sequence[Recording], observed: Sequence[bool], model: Model, robot: Robot,
@@ -52,32 +66,36 @@ def gather(
     physics = physics_of(model, robot)
     gains = np.array([j.drive_gain for j in model.joint])
     gear = float(robot.joint[0].gear)
-    base_std = _base_std(model, physics.regressor.base)
+    base_std = base_widths(model, physics.regressor.base)
     plain_own = (Column("coulomb", "Fc", (("width", WIDTH),)), Column("viscous", "Fv"), Column("offset", "c"))
     none = np.zeros((physics.dof, 2))
-    known = tuple(t for t in model.term if t.name not in ("coulomb", "viscous"))
+    known = tuple(t for t in model.term if t.name not in BASELINE)
     space = space_of(physics.regressor, plain_own, ())
     plain = Setup(physics, space, gains, physics.published, none, known=known)
     progress("first fit")
     first = [make_rows(r, plain) for r in recordings]
     sides = list(observed)
     healthy = [r for r, o in zip(first, sides, strict=True) if not o] or first
-    base, friction = plain_fit(healthy, plain.space, physics.published, base_std)
+    base, friction = _plain_fit(healthy, plain.space, physics.published, base_std)
     q, qd, load, heat = _states(first)
+    frozen = frozen_of(model, robot, recordings)
     own = (*own_columns(gear), *curve_columns())
     setup = Setup(
-        physics, space_of(physics.regressor, own, common_names(physics.dof)), gains, base, friction,
-        ranges(q, qd, load, heat), known,
+        physics, space_of(physics.regressor, own, common_names(physics.dof, frozen is not None)),
+        gains, base, friction, ranges(q, qd, load, heat), known, frozen,
     )  # fmt: skip
     progress("columns of every hypothesis")
     runs = [make_rows(r, setup) for r in recordings]
     torque = np.sqrt(np.mean(np.concatenate([r.torque for r in runs]) ** 2, axis=0))
     own_std = 0.2 * _own_std(runs, setup.space, torque)
-    common_std = {"encoder": 0.05, "elasticity": 1e-3, "backlash": 0.01, "tilt": 0.2, "delay": 0.05}
+    common_std = {
+        "encoder": 0.05, "elasticity": 1e-3, "backlash": 0.01, "tilt": 0.2, "delay": 0.05, "frozen": SHARE,
+    }  # fmt: skip
     found = candidates(setup.space, physics, own_std, common_std, base_std)
     progress("noise")
     healthy_rows = [r for r, o in zip(runs, sides, strict=True) if not o] or runs
-    scales = _scales(healthy_rows, setup.space, physics.published, base_std, own_std)
+    std = np.concatenate([base_std, own_std.ravel(), widths(setup.space.common, 1e-12)])
+    _, scales = _fitted(healthy_rows, setup.space, physics.published, std)  # what the richest model leaves
     folds = folds_of(runs, sides, scales, setup.space)
     return Evidence(setup, tuple(runs), tuple(sides), scales, tuple(folds), found, base_std, torque, own_std)
 
@@ -86,34 +104,28 @@ def _states(runs: Sequence[Rows]) -> tuple[Array, Array, Array, Array]:
     return tuple(np.concatenate([getattr(r, k) for r in runs]) for k in ("q", "qd", "load", "temperature"))  # type: ignore[return-value]
 
 
-def _base_std(model: Model, names: Sequence[str]) -> Array:
-    from ..identify.rows import Recipe  # noqa: F401
-    from ..identify.solve import PRIOR_FLOOR, PRIOR_SHARE
-
-    values = np.array([model.base[n].value for n in names])
-    kinds = ["moment" if model.base[n].unit == "kg m" else "inertia" for n in names]
-    links = [int(n.lstrip("ABCDEFGHIJKLMNOPQRSTUVWXYZ")) for n in names]
-    std = np.empty(len(names))
-    for k in range(len(names)):
-        alike = [abs(values[j]) for j in range(len(names)) if kinds[j] == kinds[k] and links[j] >= links[k]]
-        std[k] = max(PRIOR_SHARE * abs(values[k]), PRIOR_FLOOR * max(alike), 1e-3)
-    return std
+def _lifted(base: Array, space: Space) -> Array:
+    return np.concatenate([base, np.zeros(space.size - len(base))])
 
 
-def plain_fit(runs: Sequence[Rows], space: Space, mean: Array, base_std: Array) -> tuple[Array, Array]:
+def _plain_fit(runs: Sequence[Rows], space: Space, published: Array, base_std: Array) -> tuple[Array, Array]:
     """Fit base parameters, Coulomb, viscous and offset; return base (B,) and (N, 2) of friction."""
-    scales = equal_scales(space.dof)
     torque = np.sqrt(np.mean(np.concatenate([r.torque for r in runs]) ** 2, axis=0))
     std = np.concatenate([base_std, np.repeat(torque, len(space.own))])
-    theta = np.concatenate([mean, np.zeros(space.size - len(mean))])
-    center = theta.copy()
-    for _ in range(2):
-        folds = folds_of(runs, [True] * len(runs), scales, space)
-        gram = np.sum([whole(f.grams, space) for f in folds], axis=0)
-        theta = _ridge(gram, center, std)
-        scales = scales_of(runs, [residual(r, space, theta) for r in runs])
+    theta, _ = _fitted(runs, space, published, std)
     b, k = len(space.base), len(space.own)
     return theta[:b], theta[b:].reshape(space.dof, k)[:, :2]
+
+
+def _fitted(runs: Sequence[Rows], space: Space, published: Array, std: Array) -> tuple[Array, Scales]:
+    """Fit parameters (P,) of prior widths std (P,) and the noise that they leave, in two passes."""
+    mean, scales = _lifted(published, space), equal_scales(space.dof)
+    theta = mean
+    for _ in range(2):
+        folds = folds_of(runs, [True] * len(runs), scales, space)
+        theta = _ridge(np.sum([whole(f.grams, space) for f in folds], axis=0), mean, std)
+        scales = scales_of(runs, [residual(r, space, theta) for r in runs])
+    return theta, scales
 
 
 def _ridge(gram: Array, mean: Array, std: Array) -> Array:
@@ -141,17 +153,3 @@ def _own_std(runs: Sequence[Rows], space: Space, torque: Array) -> Array:
         std[j] = 0.5 * torque[j] / np.maximum(np.sqrt(power), 1e-9)
         std[j] = np.minimum(std[j], 1e6)
     return std
-
-
-def _scales(runs: Sequence[Rows], space: Space, published: Array, base_std: Array, own_std: Array) -> Scales:
-    """Noise that even the richest model leaves, in two passes."""
-    mean = np.concatenate([published, np.zeros(space.size - len(published))])
-    common = np.full(len(space.common), 1e-12)
-    std = np.concatenate([base_std, own_std.ravel(), common])
-    scales = equal_scales(space.dof)
-    for _ in range(2):
-        folds = folds_of(runs, [True] * len(runs), scales, space)
-        gram = np.sum([whole(f.grams, space) for f in folds], axis=0)
-        theta = _ridge(gram, mean, std)
-        scales = scales_of(runs, [residual(r, space, theta) for r in runs])
-    return scales

@@ -2,9 +2,8 @@
 
 from collections.abc import Sequence
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
-
 from ..codegen.languages import URSCRIPT
+from ..templates import renderer
 from .experiments import Experiment
 from .rehearsal import minutes_of, rounds_of
 from .room import Room
@@ -20,10 +19,6 @@ def script_of(experiment: Experiment, room: Room, names: Sequence[str]) -> str:
 
     Joints beyond the model's N stay where they are when it begins.
     """
-    environment = Environment(
-        loader=PackageLoader("residuum.templates", ""), undefined=StrictUndefined, keep_trailing_newline=True
-    )
-    environment.filters["float_ur"] = URSCRIPT.number
     minutes = minutes_of(experiment)
     steps = [
         {
@@ -34,7 +29,8 @@ def script_of(experiment: Experiment, room: Room, names: Sequence[str]) -> str:
         }
         for s in experiment.steps
     ]
-    return environment.get_template("urscript/experiment.script.jinja").render(
+    template = renderer({"float_ur": URSCRIPT.number}).get_template("urscript/experiment.script.jinja")
+    return template.render(
         name=experiment.name,
         text=experiment.text,
         names=list(names),

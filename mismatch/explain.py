@@ -1,7 +1,7 @@
 """`explain` from files to answer: read, gather evidence, judge, locate, prove, refine."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -88,8 +88,8 @@ def _explained(
 ) -> Explanation:  # fmt: skip
     judged = judge(evidence, progress)
     progress("what is left")
-    weighed = reweighed(evidence, judged.model, judged.mean)
-    own = parameters(weighed, judged.model, judged.mean)
+    weighed = reweighed(evidence, judged.model)
+    own = parameters(weighed, judged.model)
     which = observed_runs(evidence)
     names = [recordings[r].name for r in which]
     left = [residual(evidence.runs[r], evidence.setup.space, own) for r in which]
@@ -101,13 +101,13 @@ def _explained(
         evidence.setup.physics,
         evidence.scales.sigma[:, 0],
     )
-    strange = unknowns(evidence, weighed, judged, found)
+    strange = unknowns(evidence, weighed, judged)
     progress("sharpening")
     sharp = sharpened(weighed, judged)
     progress("proof on left-out blocks")
     kept = [a for a in judged.accepted if a.is_finding or not evidence.has_reference]
     baseline = plain(weighed, [a for a in kept if not a.is_finding])[0]
-    proof, before, after = prove(weighed, baseline, plain(weighed, kept)[0], judged.mean)
+    proof, before, after = prove(weighed, baseline, plain(weighed, kept)[0])
     gear = float(task.robot.joint[0].gear)
     runs = [evidence.runs[r] for r in which]
     places = regions(runs, names, before.residual, gear)
@@ -131,7 +131,7 @@ def _proposal(task: Task, evidence: Evidence, judged: Judged, progress: Progress
     k = classes[0]
     rivals = [judged.accepted[k].score.candidate, *judged.accepted[k].alike]
     speeds = np.array([j.max_speed for j in task.robot.joint[: evidence.setup.space.dof]])
-    return next_motion(evidence, without(evidence, judged, k), rivals, speeds)
+    return next_motion(evidence, without(judged, k), rivals, speeds)
 
 
 def _distinct(taken: Sequence[tuple[Recording, AuditReport, bool]]) -> None:
@@ -146,18 +146,12 @@ def _distinct(taken: Sequence[tuple[Recording, AuditReport, bool]]) -> None:
 
 def _read(path: Path, reference: bool) -> tuple[Recording, AuditReport, bool]:
     recording, report = clean(read(path))
-    lean = replace(
-        recording, others={}, target_q=None, target_qdd=None, target_current=None, target_moment=None,
-        actual_TCP_force=None,
-    )  # fmt: skip
-    return lean, report, reference
+    return recording.lean(), report, reference
 
 
 def _source(recording: Recording, report: AuditReport, reference: bool) -> Source:
-    steps = np.diff(recording.timestamp)
-    rate = 1 / float(np.median(steps)) if len(steps) else 0.0
     notes = tuple(f.text for f in report.findings)
-    return Source(recording.name, recording.duration, rate, reference, notes)
+    return Source(recording.name, recording.duration, recording.rate, reference, notes)
 
 
 def _inputs(taken: Sequence[tuple[Recording, AuditReport, bool]]) -> tuple[Input, ...]:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from .candidates import Candidate
 from .evidence import Evidence
 from .grams import regime
-from .naming import Scored, chosen, nuisance, ranked, scored, tested
+from .naming import Scored, chosen, nuisance, ranked, scored, steadiness, tested
 from .selection import Directions
 
 Array = NDArray[np.float64]
@@ -19,8 +19,11 @@ Key = tuple[str, int | None]
 EVIDENCE = 10.0
 #: Mean gain of a fold over its standard error; share of folds that improve.
 STEADY, IMPROVED = 2.0, 0.6
-#: Or nearly all folds improve and no fold alone makes the size: where some tell far more than others.
-ALWAYS, CONSISTENT = 0.75, 4.0
+#: Or, where some folds tell far more than others (the warm ones, those with jerks): a size that no fold alone
+#: makes (jackknife), with nearly all folds improved, or surer and with twice the evidence.
+ALWAYS, CONSISTENT, SURE = 0.75, 4.0, 5.0
+#: A size that is not this many of its jackknife's standard errors away from zero is no size at all.
+SIZED = 3.0
 #: A named effect explains at least this share of what its joint's model leaves: less is of no use to anyone.
 SHARE = 0.01
 #: A rival is told apart by this many nats, or by a steady lead.
@@ -46,6 +49,11 @@ class Accepted:
     rivals: (rival, nats behind, steadiness of the lead). share: of what was left unexplained on its joints.
     """
 
+    score: Scored
+    alike: tuple[Candidate, ...]
+    rivals: tuple[tuple[Candidate, float, float], ...]
+    share: float
+
     @property
     def names(self) -> list[str]:
         """Effects that do as well as this one."""
@@ -58,11 +66,6 @@ class Accepted:
         small = c.effect == "time_delay" and self.score.size[0] < SYNCHRONOUS
         return c.effect != "base_free" and not small
 
-    score: Scored
-    alike: tuple[Candidate, ...]
-    rivals: tuple[tuple[Candidate, float, float], ...]
-    share: float
-
 
 @dataclass(frozen=True)
 class Judged:
@@ -70,7 +73,6 @@ class Judged:
 
     accepted: tuple[Accepted, ...]
     model: Directions
-    mean: Array
     refused: tuple[tuple[Scored, str], ...]
 
 
@@ -82,14 +84,14 @@ def judge(
 
     known: what stands already (not judged again); most: findings at most.
     """
-    model, mean = (known.model, known.mean) if known else nuisance(evidence)
+    model = known.model if known else nuisance(evidence)
     skip = ("base_free",) if evidence.has_reference else UNSEEN
     accepted, refused = list[Accepted](), list[tuple[Scored, str]]()
     barred: set[Key] = set()
     tries = 0
     while len(accepted) < most and tries < TRIES:
         progress(f"hypotheses, round {len(accepted) + 1}")
-        order = [s for s in ranked(evidence, model, mean, skip) if s.candidate.key not in barred]
+        order = [s for s in ranked(evidence, model, skip) if s.candidate.key not in barred]
         if not order or order[0].evidence < EVIDENCE:
             break
         best = _likelier(order)
@@ -97,7 +99,7 @@ def judge(
         if why := implausible(evidence, best):
             refused.append((best, why))
             continue
-        test = tested(evidence, model, mean, best.candidate)
+        test = tested(evidence, model, best.candidate)
         part = share_of(evidence, test)
         why = (
             objection(test, part)
@@ -108,10 +110,10 @@ def judge(
         if why:
             refused.append((test, why))
             continue
-        alike, rivals = _rivals(evidence, model, mean, best, [o for o in order if o is not best])
+        alike, rivals = _rivals(evidence, model, best, [o for o in order if o is not best])
         accepted.append(Accepted(test, alike, rivals, part))
         model = chosen(model, evidence, best.candidate)
-    return Judged(tuple(accepted), model, mean, tuple(refused))
+    return Judged(tuple(accepted), model, tuple(refused))
 
 
 def _likelier(order: Sequence[Scored]) -> Scored:
@@ -153,10 +155,13 @@ def objection(test: Scored, part: float) -> str:
     """Return in words why a hypothesis is not believed, or nothing."""
     if test.evidence < EVIDENCE or test.total < EVIDENCE:
         return f"evidence {min(test.evidence, test.total):.1f} nats, {EVIDENCE:g} asked"
+    if test.consistency < SIZED:
+        return f"its size is not the same over the recordings (jackknife t = {test.consistency:.1f})"
     consistent = test.improved >= ALWAYS and test.consistency >= CONSISTENT
-    if test.steadiness < STEADY and not consistent:
+    sure = test.total >= 2 * EVIDENCE and test.consistency >= SURE
+    if test.steadiness < STEADY and not (consistent or sure):
         return f"not steady over the recordings (t = {test.steadiness:.1f})"
-    if test.improved < IMPROVED:
+    if test.improved < (0.5 if sure else IMPROVED):
         return f"improves only {100 * test.improved:.0f} % of the left-out parts"
     if part < SHARE:
         return f"explains only {100 * part:.1f} % of what is left"
@@ -187,7 +192,7 @@ def _shadow(test: Scored, accepted: Sequence[Accepted], joints: int) -> str:
 
 
 def _rivals(
-    evidence: Evidence, model: Directions, mean: Array, best: Scored, others: Sequence[Scored]
+    evidence: Evidence, model: Directions, best: Scored, others: Sequence[Scored]
 ) -> tuple[tuple[Candidate, ...], tuple[tuple[Candidate, float, float], ...]]:
     """Split rivals into those that do as well and those beaten: (rival, nats, steadiness of the lead).
 
@@ -202,14 +207,13 @@ def _rivals(
     ][:12]  # fmt: skip
     if not near:
         return (), ()
-    after = scored(evidence, chosen(model, evidence, best.candidate), mean, [o.candidate for o in near])
+    after = scored(evidence, chosen(model, evidence, best.candidate), [o.candidate for o in near])
     alike, beaten = list[Candidate](), []
     for other, left in zip(near, after, strict=True):
         if left.evidence > 0.5 * other.evidence:
             continue  # it explains something else
         lead = best.evidence - other.evidence
-        each = best.gain - other.gain
-        steady = float(np.mean(each)) / max(float(np.std(each, ddof=1)) / np.sqrt(len(each)), 1e-12)
+        steady = steadiness(best.gain - other.gain)
         if lead < APART or (lead < 0.05 * best.evidence and steady < STEADY):
             alike.append(other.candidate)
         else:

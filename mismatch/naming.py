@@ -12,10 +12,12 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from .candidates import Candidate
-from .columns import SHORT
+from .columns import BASELINE, SHORT, Space
 from .evidence import Evidence, residual
+from .frozen import widths
 from .grams import Scales, folds_of, scales_of
-from .selection import Directions, Eliminated, Sums, eliminate, log_evidence
+from .refit import observed_runs, parameters
+from .selection import Directions, Eliminated, eliminate, log_evidence
 
 Array = NDArray[np.float64]
 
@@ -53,10 +55,7 @@ class Scored:
     @property
     def steadiness(self) -> float:
         """Mean gain of a fold over its standard error."""
-        if len(self.gain) < 2:
-            return 0.0
-        spread = float(np.std(self.gain, ddof=1)) / np.sqrt(len(self.gain))
-        return float(np.mean(self.gain) / max(spread, 1e-12))
+        return steadiness(self.gain)
 
     @property
     def improved(self) -> float:
@@ -64,48 +63,74 @@ class Scored:
         return float(np.mean(np.asarray(self.gain > 0)))
 
 
-def nuisance(evidence: Evidence) -> tuple[Directions, Array]:
-    """Return what is fitted whatever is found, and the prior mean (P,) of all parameters."""
+def steadiness(gain: Array) -> float:
+    """Return the mean of gains (F,) over its standard error; nothing is steady that was seen once."""
+    if len(gain) < 2:
+        return 0.0
+    spread = float(np.std(gain, ddof=1)) / np.sqrt(len(gain))
+    return float(np.mean(gain) / max(spread, 1e-12))
+
+
+def nuisance(evidence: Evidence) -> Directions:
+    """Return what is fitted whatever is found."""
     space = evidence.setup.space
-    mean = np.concatenate([evidence.setup.physics.published, np.zeros(space.size - len(space.base))])
     if evidence.has_reference:
-        return _rich(evidence, mean), mean
+        return _rich(evidence)
     keep = list(range(len(space.base)))
     std = list(TIGHT * evidence.base_std)
     for j in range(space.dof):
         for k, c in enumerate(space.own):
             level = max(float(evidence.setup.friction[j, 0]), 1e-3)
-            if c.term in ("coulomb", "viscous"):
+            if c.usual:
                 keep.append(space.own_index(j, k))
                 std.append(float(evidence.own_std[j, k]))
             elif c.term in NEAR_REST:
                 keep.append(space.own_index(j, k))
                 travel = c.value.get("zs", SHORT)
                 std.append(level * (SHORTEST / travel if travel < SHORT else EVERY_GEAR))
-    vectors = sparse.eye(space.size, format="csc")[:, keep]
-    return Directions(vectors, np.array(std), np.ones(len(keep), bool)), mean
+    return _softened(evidence, _of(space, keep, std))
 
 
-def _rich(evidence: Evidence, mean: Array) -> Directions:
+def _of(space: Space, keep: Sequence[int], std: Sequence[float]) -> Directions:
+    """Return parameters of the space as directions that both sides share."""
+    vectors = sparse.eye(space.size, format="csc")[:, list(keep)]
+    return Directions(vectors, np.array(std), np.ones(len(keep), bool))
+
+
+def _softened(evidence: Evidence, model: Directions) -> Directions:
+    """Let each joint's Coulomb friction pass zero speed as gently as its rows ask for, if they do."""
+    space, best = evidence.setup.space, log_evidence(evidence.sums, model)
+    for j in range(space.dof):
+        tried = [
+            model + _of(space, [space.own_index(j, k)], [float(evidence.own_std[j, k])])
+            for k, c in enumerate(space.own)
+            if c.soft
+        ]
+        for other in tried:
+            if (found := log_evidence(evidence.sums, other)) > best:
+                best, model = found, other
+    return model
+
+
+def _rich(evidence: Evidence) -> Directions:
     """Every column for both sides, as free as the reference recordings say by their marginal likelihood.
 
     First one freedom for all columns, then each term that the reference asks for gets its full prior width.
     """
     space = evidence.setup.space
-    sums = Sums(evidence.folds, space, mean)
     # what heat does is the reference's own only where the reference shows it; else it explains anything
     terms = ["heat" if c.parameter == "temperature" else c.term for c in space.own]
     heated = {"heat", "temperature_dependent"}
-    free = {"coulomb", "viscous"}
+    free = set(BASELINE)
 
     def model(share: float, wide: set[str]) -> Directions:
         width = np.array([1.0 if t in wide else BARE if t in heated else share for t in terms])
-        common = np.full(len(space.common), 1e-3)
+        common = widths(space.common, 1e-3)
         std = np.concatenate([evidence.base_std, (width * evidence.own_std).ravel(), common])
         return Directions(sparse.eye(space.size, format="csc"), std, np.ones(space.size, bool))
 
     def worth(share: float, wide: set[str]) -> float:
-        return log_evidence(sums, model(share, wide), reference_only=True)
+        return log_evidence(evidence.sums, model(share, wide), reference_only=True)
 
     share = max(SHARES, key=lambda s: worth(s, free))
     best = worth(share, free)
@@ -115,12 +140,12 @@ def _rich(evidence: Evidence, mean: Array) -> Directions:
     return model(share, free)
 
 
-def reweighed(evidence: Evidence, model: Directions, mean: Array) -> Evidence:
+def reweighed(evidence: Evidence, model: Directions) -> Evidence:
     """Weigh the observed rows by what a model leaves of them: their scale by regime, and its memory."""
-    space, none = evidence.setup.space, evidence.found.directions.take([])
+    space = evidence.setup.space
+    seen = [evidence.runs[r] for r in observed_runs(evidence)]
     for _ in range(2):
-        own = mean + eliminate(Sums(evidence.folds, space, mean), model, none, None).own
-        seen = [r for r, o in zip(evidence.runs, evidence.observed, strict=True) if o]
+        own = parameters(evidence, model)
         scales = scales_of(seen, [residual(r, space, own) for r in seen])
         if evidence.has_reference:
             scales = Scales(
@@ -133,12 +158,12 @@ def reweighed(evidence: Evidence, model: Directions, mean: Array) -> Evidence:
     return evidence
 
 
-def scored(evidence: Evidence, model: Directions, mean: Array, some: Sequence[Candidate]) -> list[Scored]:
+def scored(evidence: Evidence, model: Directions, some: Sequence[Candidate]) -> list[Scored]:
     """Score hypotheses as additions to a model, with the evidence's weights."""
     used = sorted({c for x in some for c in x.columns})
     place = {c: i for i, c in enumerate(used)}
     directions = evidence.found.directions.take(used)
-    sums = Sums(evidence.folds, evidence.setup.space, mean)
+    sums = evidence.sums
     out = [eliminate(sums, model, directions, k) for k in range(len(sums.observed))]
     whole = eliminate(sums, model, directions, None)
     found = []
@@ -163,20 +188,20 @@ def _consistency(whole: Eliminated, out: Sequence[Eliminated], columns: Sequence
     return float(1 / np.sqrt(max(spread, 1e-12)))
 
 
-def ranked(evidence: Evidence, model: Directions, mean: Array, skip: Sequence[str] = ()) -> list[Scored]:
+def ranked(evidence: Evidence, model: Directions, skip: Sequence[str] = ()) -> list[Scored]:
     """Return every hypothesis at its best nonlinear value as an addition to a model, best first."""
     best: dict[tuple[str, int | None], Scored] = {}
-    for s in scored(evidence, model, mean, [c for c in evidence.found.each if c.effect not in skip]):
+    for s in scored(evidence, model, [c for c in evidence.found.each if c.effect not in skip]):
         c = s.candidate
         if (c.key not in best or s.evidence > best[c.key].evidence) and not (c.positive and s.size[0] < 0):
             best[c.key] = s
     return sorted(best.values(), key=lambda s: -s.evidence)
 
 
-def tested(evidence: Evidence, model: Directions, mean: Array, candidate: Candidate) -> Scored:
+def tested(evidence: Evidence, model: Directions, candidate: Candidate) -> Scored:
     """Score one hypothesis with the rows weighed by what is left once it is in."""
-    weighed = reweighed(evidence, chosen(model, evidence, candidate), mean)
-    return scored(weighed, model, mean, [candidate])[0]
+    weighed = reweighed(evidence, chosen(model, evidence, candidate))
+    return scored(weighed, model, [candidate])[0]
 
 
 def chosen(model: Directions, evidence: Evidence, candidate: Candidate) -> Directions:

@@ -23,7 +23,7 @@ from .experiments import Experiment, library
 from .rehearsal import Lean, information, lean, minutes_of
 from .result import NextMotion
 from .room import Room, room_of
-from .selection import Directions, Eliminated, Sums, eliminate
+from .selection import Directions, Eliminated, eliminate
 
 Array = NDArray[np.float64]
 Key = tuple[str, int | None]
@@ -67,12 +67,9 @@ class Judgement:
 
     def __init__(self, evidence: Evidence, model: Directions, candidates: Sequence[Candidate]) -> None:
         """Eliminate the model from the rivals' columns on the recordings; the sizes found are from there."""
-        space = evidence.setup.space
-        self.model, self.evidence = model, evidence
+        self.model = model
         self.directions, self.rivals = _of_rivals(evidence, candidates)
-        published = evidence.setup.physics.published
-        mean = np.concatenate([published, np.zeros(space.size - len(published))])
-        self._sums = Sums(evidence.folds, space, mean)
+        self._sums = evidence.sums
         self._known = eliminate(self._sums, model, self.directions, None)
         self._sizes = {r.key: _size(self._known, r.columns) for r in self.rivals}
         self._before = self.parted(self._known)

@@ -63,22 +63,25 @@ def physics_of(model: Model, robot: Robot) -> Physics:
     return _physics(lean.model_dump_json(), robot.model_dump_json())
 
 
+def published(model: Model) -> tuple[Regressor, Array]:
+    """Return the regressor of a model's arm and its base parameters (B,)."""
+    found = regressor(robot_arm(model))
+    return found, np.array([model.base[n].value for n in found.base])
+
+
 @lru_cache(maxsize=4)
 def _physics(model_json: str, robot_json: str) -> Physics:
     model, robot = Model.model_validate_json(model_json), Robot.model_validate_json(robot_json)
-    found = regressor(robot_arm(model))
-    published = np.array([model.base[n].value for n in found.base])
+    found, own = published(model)
     strength = float(np.linalg.norm(model.gravity))
     axes = []
     for axis in np.eye(3):
         turned = robot.model_copy(update={"gravity": tuple(strength * axis)})
         nominal = nominal_model(turned, "", model.dof, model.locked_angles)
-        columns = regressor(robot_arm(nominal))
-        base = np.array([nominal.base[n].value for n in columns.base])
-        axes.append(Gravity(columns, base, _masses(nominal)))
+        axes.append(Gravity(*published(nominal), _masses(nominal)))
     mapping = link_map(model)
     rotors = mapping.rotors @ np.array([j.reflected_inertia for j in robot.joint[: model.dof]])
-    return Physics(found, published, mapping, rotors, tuple(axes), strength)
+    return Physics(found, own, mapping, rotors, tuple(axes), strength)
 
 
 def _masses(model: Model) -> Array:
@@ -88,15 +91,6 @@ def _masses(model: Model) -> Array:
         m, mx, _, mz = links[:, 10 * k : 10 * k + 4].T
         found.append(m + joint.a * mx + joint.d * mz)
     return np.stack(found, axis=1)
-
-
-def combined(columns: Regressor, part: str, parameters: Array, **inputs: Array) -> Array:
-    """Return momentum or beta (T, N) at some base parameters (B,)."""
-    values = columns.values(part, **inputs)
-    found = np.zeros((len(values), columns.dof))
-    for k, (row, column) in enumerate(columns.parts[part].places):
-        found[:, row] += values[:, k] * parameters[column]
-    return found
 
 
 def slopes(physics: Physics, base: Array, q: Array, qd: Array) -> Mapping[str, Array]:
@@ -111,8 +105,8 @@ def slopes(physics: Physics, base: Array, q: Array, qd: Array) -> Mapping[str, A
         step[j] = _STEP
         for part, letter in (("momentum", "p"), ("beta", "b")):
             for moved, end in (((step, 0 * step), "q"), ((0 * step, step), "v")):
-                up = combined(physics.regressor, part, base, q=q + moved[0], qd=qd + moved[1])
-                down = combined(physics.regressor, part, base, q=q - moved[0], qd=qd - moved[1])
+                up = physics.regressor.combined(part, base, q=q + moved[0], qd=qd + moved[1])
+                down = physics.regressor.combined(part, base, q=q - moved[0], qd=qd - moved[1])
                 found[letter + end][:, :, j] = (up - down) / (2 * _STEP)
     return found
 
@@ -123,7 +117,7 @@ def tilts(physics: Physics, q: Array) -> Array:
     Gravity then gets a component along -y, +x of the base (small angles); published links.
     """
     still = np.zeros_like(q)
-    along = [-combined(g.regressor, "beta", g.base, q=q, qd=still) for g in physics.axes[:2]]
+    along = [-g.regressor.combined("beta", g.base, q=q, qd=still) for g in physics.axes[:2]]
     return np.stack([-along[1], along[0]], axis=2)
 
 
@@ -134,7 +128,7 @@ def forces(physics: Physics, q: Array, frame: int) -> Array:
     """
     still = np.zeros_like(q)
     along = [
-        -combined(g.regressor, "beta", g.points[:, frame - 1] / physics.strength, q=q, qd=still)
+        -g.regressor.combined("beta", g.points[:, frame - 1] / physics.strength, q=q, qd=still)
         for g in physics.axes
     ]
     return np.stack(along, axis=2)

@@ -14,7 +14,7 @@ from .evidence import Evidence, residual
 from .grams import weights
 from .judging import EVIDENCE, Judged
 from .refit import observed_runs, parameters
-from .selection import Directions, Sums, normal_equations
+from .selection import Directions, normal_equations
 from .sharpen import without
 
 Array = NDArray[np.float64]
@@ -35,22 +35,19 @@ def placebo_rate(evidence: Evidence, judged: Judged) -> float | None:
         c = a.score.candidate
         if c.joint is None or not c.terms:
             continue
-        found = _evidence(evidence, without(evidence, judged, k), judged.mean, c.joint, list(c.columns))
+        found = _evidence(evidence, without(judged, k), c.joint, list(c.columns))
         passed += sum(x > EVIDENCE for x in found)
         count += len(found)
     return passed / count if count else None
 
 
-def _evidence(
-    evidence: Evidence, model: Directions, mean: Array, joint: int, columns: Sequence[int]
-) -> list[float]:
+def _evidence(evidence: Evidence, model: Directions, joint: int, columns: Sequence[int]) -> list[float]:
     """Return nats of each shift of a joint's columns as an addition to a model."""
     space, chosen = evidence.setup.space, evidence.found.directions.take(columns)
     place = space.indices[joint]
     combine = chosen.vectors[place].toarray()  # (P_j, k)
-    own = parameters(evidence, model, mean)
-    sums = Sums(evidence.folds, space, mean)
-    a, _ = normal_equations(sums, model, sums.total)
+    own = parameters(evidence, model)
+    a, _ = normal_equations(evidence.sums, model, evidence.sums.total)
     factor = cho_factor(a + np.diag(1 / model.std**2))
     rng, found = np.random.default_rng(_SEED), list[float]()
     runs = [evidence.runs[r] for r in observed_runs(evidence)]

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .evidence import Evidence
+from .grams import blocks
 from .refit import LeftOut, left_out, observed_runs
 from .result import Proof
 from .selection import Directions
@@ -16,13 +17,11 @@ _DRAWS, _SEED = 1000, 7
 FALSE_ALARMS = 1.0
 
 
-def prove(
-    evidence: Evidence, before: Directions, after: Directions, mean: Array
-) -> tuple[Proof, LeftOut, LeftOut]:
+def prove(evidence: Evidence, before: Directions, after: Directions) -> tuple[Proof, LeftOut, LeftOut]:
     """Compare two models on rows that neither has seen; also return what both leave there."""
     curves = [c for joint in evidence.found.curve for c in joint]
     flexible = after + evidence.found.directions.take(curves)
-    first, last, best = (left_out(evidence, m, mean) for m in (before, after, flexible))
+    first, last, best = (left_out(evidence, m) for m in (before, after, flexible))
     moving = [evidence.runs[r].moving.max(axis=1) > 0.5 for r in observed_runs(evidence)]
     rms_first, rms_last, rms_best = (_rms(x, moving) for x in (first, last, best))
     ceiling = np.minimum(rms_best, rms_last)
@@ -37,16 +36,10 @@ def prove(
 
 
 def _scheme(evidence: Evidence) -> str:
-    count = len({(r, s.start) for r, s in _parts(evidence)})
+    count = len(blocks(evidence.runs, evidence.observed, True))
     side = "of the observed recordings, reference kept" if evidence.has_reference else "of the recordings"
     what = "rms of the low-passed torque error where the arm moves"
     return f"{count} blocks {side} left out one at a time; {what}"
-
-
-def _parts(evidence: Evidence) -> list[tuple[int, slice]]:
-    from .grams import blocks
-
-    return blocks(evidence.runs, evidence.observed, True)
 
 
 def _rms(left: LeftOut, moving: list[NDArray[np.bool_]]) -> Array:

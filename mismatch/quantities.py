@@ -12,7 +12,7 @@ from ..symbolic.terms import CATALOGUE
 from .candidates import Candidate
 from .evidence import Evidence
 from .naming import Scored
-from .selection import Directions, Sums, eliminate
+from .selection import Directions, eliminate
 
 Array = NDArray[np.float64]
 
@@ -34,12 +34,12 @@ def quantity(value: float, std: float | None, unit: str) -> Quantity:
 
 
 def parameters_of(
-    evidence: Evidence, before: Directions, mean: Array, found: Scored, model: Model, spread: float | None
+    evidence: Evidence, before: Directions, found: Scored, model: Model, spread: float | None
 ) -> dict[str, Quantity]:
     """Return the physical parameters of a finding; spread: std of its nonlinear value, if it has one."""
     c, size, std = found.candidate, found.size, found.std
     if c.effect == "payload":
-        return _payload(evidence, before, mean, model)
+        return _payload(evidence, before, model)
     if c.effect == "link_inertial":
         return _link(evidence, c, size, std)
     simple = {
@@ -47,6 +47,7 @@ def parameters_of(
         "backlash": ("gap", 1.0, "rad"),
         "time_delay": ("delay", 1.0, "s"),
         "rotor_inertia": ("inertia", 1.0, "kg m^2"),
+        "frozen_joint_coupling": ("share", 1.0, "1"),
     }
     if (
         c.effect == "drive_gain"
@@ -77,14 +78,14 @@ def _term(
     return found
 
 
-def _payload(evidence: Evidence, before: Directions, mean: Array, model: Model) -> dict[str, Quantity]:
+def _payload(evidence: Evidence, before: Directions, model: Model) -> dict[str, Quantity]:
     """Mass and centre of mass at the flange, in the frame of the last joint; the gains' doubt is in."""
     space, physics = evidence.setup.space, evidence.setup.physics
     links = physics.map.links[:, -10:]
     vectors = np.zeros((space.size, 10))
     vectors[: len(links)] = links
     own = Directions(sparse.csc_matrix(vectors), _PAYLOAD, np.zeros(10, bool))
-    whole = eliminate(Sums(evidence.folds, space, mean), before, own, None)
+    whole = eliminate(evidence.sums, before, own, None)
     value, covariance = whole.solve(range(10))
     doubts = [j.drive_gain_std / j.drive_gain if j.drive_gain_std else GAIN_DOUBT for j in model.joint]
     doubt = float(np.sqrt(np.mean(np.square(doubts))))

@@ -11,18 +11,18 @@ from ..robots import Robot
 from ..robots.model import Covariance, Model, TermData
 from ..symbolic.terms import CATALOGUE
 from ..symbolic.tilt import tilted
+from .columns import BASELINE
 from .evidence import Evidence
 from .judging import Accepted
 from .naming import TIGHT
 from .rows import DELAYS
-from .selection import Directions, Sums, normal_equations
+from .selection import Directions, normal_equations
 
 Array = NDArray[np.float64]
 
 #: rad/s; width of the smooth sign in the model: sharp, and above the noise of a speed at rest.
 _WIDTH = 2e-3
 _DIGITS = 10
-_BASELINE = ("coulomb", "viscous")
 
 
 def refined(
@@ -35,8 +35,7 @@ def refined(
     """
     space = evidence.setup.space
     directions, used = plain(evidence, accepted)
-    mean = np.concatenate([evidence.setup.physics.published, np.zeros(space.size - len(space.base))])
-    theta, spread = _fit(evidence, directions, used, mean)
+    theta, spread = _fit(evidence, directions, used)
     full = np.zeros(space.size)
     full[used] = theta
     base = {
@@ -75,7 +74,7 @@ def plain(evidence: Evidence, accepted: Sequence[Accepted]) -> tuple[Directions,
     std = list(evidence.base_std * (1.0 if free else TIGHT))
     for j in range(space.dof):
         for k, c in enumerate(space.own):
-            if c.term in _BASELINE:
+            if c.usual:
                 keep.append(space.own_index(j, k))
                 std.append(float(evidence.own_std[j, k]))
     vectors = sparse.eye(space.size, format="csc")[:, keep]
@@ -92,16 +91,12 @@ def plain(evidence: Evidence, accepted: Sequence[Accepted]) -> tuple[Directions,
 _INERTIAL = ("payload", "link_inertial", "rotor_inertia", "base_free")
 
 
-def _fit(
-    evidence: Evidence, directions: Directions, used: NDArray[np.int64], mean: Array
-) -> tuple[Array, Array]:
+def _fit(evidence: Evidence, directions: Directions, used: NDArray[np.int64]) -> tuple[Array, Array]:
     """Fit and make physical; return the used parameters on the observed side and their covariance."""
-    space = evidence.setup.space
-    sums = Sums(evidence.folds, space, mean)
-    a, r = normal_equations(sums, directions, sums.total)
+    a, r = normal_equations(evidence.sums, directions, evidence.sums.total)
     inverse = np.linalg.inv(a + np.diag(1 / directions.std**2))
     picked = directions.vectors[used].toarray()
-    theta = mean[used] + picked @ (inverse @ r)
+    theta = evidence.mean[used] + picked @ (inverse @ r)
     spread = picked @ inverse @ picked.T
     positive = [
         k for k, u in enumerate(used) if _column(evidence, int(u)) in (("coulomb", "Fc"), ("viscous", "Fv"))
@@ -152,11 +147,11 @@ def _terms(
     for j in range(space.dof):
         for k, column in enumerate(space.own):
             at = space.own_index(j, k)
-            if column.term in _BASELINE:
+            if column.usual:
                 add(column.term, j, {}, {column.parameter: (full[at], std[at])})
     for position, a in enumerate(accepted):
         c = a.score.candidate
-        if c.joint is not None and c.terms and c.terms[0] in CATALOGUE and c.terms[0] not in _BASELINE:
+        if c.joint is not None and c.terms and c.terms[0] in CATALOGUE and c.terms[0] not in BASELINE:
             mine = {
                 x.parameter: space.own_index(c.joint, k)
                 for k, x in enumerate(space.own)
@@ -190,13 +185,11 @@ def _shared_term(evidence: Evidence, a: Accepted, full: Array, std: Mapping[int,
 
 def _own_inertia(evidence: Evidence, joint: int) -> float:
     """Mean M_jj (kg m^2) over the observed poses: momentum of joint j at unit speed of joint j."""
-    from .physics import combined
-
     q = np.concatenate([r.q for r in evidence.runs if len(r)])[::50]
     unit = np.zeros_like(q)
     unit[:, joint] = 1.0
     setup = evidence.setup
-    return float(combined(setup.physics.regressor, "momentum", setup.base, q=q, qd=unit)[:, joint].mean())
+    return float(setup.physics.regressor.combined("momentum", setup.base, q=q, qd=unit)[:, joint].mean())
 
 
 def _geometry(model: Model, robot: Robot, accepted: Sequence[Accepted]) -> Model:

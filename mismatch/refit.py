@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from .evidence import Evidence, residual
 from .grams import blocks
-from .selection import Directions, Sums, eliminate
+from .selection import Directions, eliminate
 
 Array = NDArray[np.float64]
 
@@ -20,17 +20,14 @@ class LeftOut:
     fold: tuple[NDArray[np.int64], ...]
 
 
-def parameters(evidence: Evidence, model: Directions, mean: Array, left_out: int | None = None) -> Array:
+def parameters(evidence: Evidence, model: Directions, left_out: int | None = None) -> Array:
     """Return the parameters (P,) on the observed side of a model fitted to all folds, or without one."""
     none = evidence.found.directions.take([])
-    sums = Sums(evidence.folds, evidence.setup.space, mean)
-    return np.asarray(mean + eliminate(sums, model, none, left_out).own, np.float64)
+    return np.asarray(evidence.mean + eliminate(evidence.sums, model, none, left_out).own, np.float64)
 
 
-def left_out(evidence: Evidence, model: Directions, mean: Array) -> LeftOut:
+def left_out(evidence: Evidence, model: Directions) -> LeftOut:
     """Return what a model leaves of every observed row that it has not seen."""
-    none, space = evidence.found.directions.take([]), evidence.setup.space
-    sums = Sums(evidence.folds, space, mean)
     parts, number = blocks(evidence.runs, evidence.observed, True), 0
     residuals, folds = [], []
     for run in observed_runs(evidence):
@@ -38,8 +35,8 @@ def left_out(evidence: Evidence, model: Directions, mean: Array) -> LeftOut:
         found, which = np.zeros(rows.torque.shape), np.zeros(len(rows), np.int64)
         theirs = [p for r, p in parts if r == run]
         for part in theirs:
-            own = mean + eliminate(sums, model, none, number).own
-            found[part] = residual(rows, space, own, part)
+            own = parameters(evidence, model, number)
+            found[part] = residual(rows, evidence.setup.space, own, part)
             which[part] = number
             number += 1
         residuals.append(found)

@@ -4,7 +4,6 @@ Both sides pass the same zero-phase low-pass, and momentum is differentiated by 
 (identify/kernel.py). Rows stand four to a period of the cutoff.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,15 +12,17 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from ..codegen.columns import columns as term_columns
-from ..identify.kernel import Filter, Kernel, batches, segments
+from ..identify.kernel import Filter, Kernel, batches, portions, segments
 from ..identify.rows import GAP, REST, SAMPLES_PER_PERIOD
 from ..recordings import Recording, speeds
 from ..robots.model import TermData
 from ..symbolic.terms import CATALOGUE
+from . import signs
 from .columns import WIDTH, Space
 from .fast import Fast, fast_band
 from .flexible import Ranges, curves
-from .physics import Physics, combined, slopes, tilts
+from .frozen import Frozen
+from .physics import Physics, slopes, tilts
 
 Array = NDArray[np.float64]
 
@@ -44,7 +45,8 @@ class Setup:
     """What rows are made with. gains (N,) Nm/A; base (B,): parameters of loads and slopes.
 
     friction (N, 2): Coulomb and viscous, of the torque that is delayed or scaled; limits: ranges of the
-    flexible curve (None: it is left out). known: terms whose torque is taken off what was measured.
+    flexible curve (None: it is left out). known: terms whose torque is taken off what was measured. frozen:
+    the joints beyond (None: they stand still, or nothing is known of them).
     """
 
     physics: Physics
@@ -54,6 +56,7 @@ class Setup:
     friction: Array
     limits: Ranges | None = None
     known: tuple[TermData, ...] = ()
+    frozen: Frozen | None = None
 
 
 @dataclass(frozen=True)
@@ -99,6 +102,7 @@ class _Track:
     load_rate: Array
     motor: Array
     since: Array
+    beyond: Array  # (T, 2 N): momentum and beta that joints beyond the model add
     held: Array  # (T, N, H): columns that remember, made over the whole recording at once
 
 
@@ -108,7 +112,7 @@ def make_rows(recording: Recording, setup: Setup) -> Rows:
     step = 1 / (4 * kernel.cutoff)
     pieces, starts, count = list[Rows](), list[int](), 0
     for stretch in segments(track.time, GAP / rate):
-        for k, (at, part) in enumerate(_portions(track.time, stretch, kernel, step)):
+        for k, (at, part) in enumerate(portions(track.time, stretch, kernel, step, _PORTION)):
             if k == 0:
                 starts.append(count)
             pieces.append(_filtered(track, part, at, setup, kernel))
@@ -127,34 +131,20 @@ def _fast(track: _Track, setup: Setup, kernel: Kernel, origin: float) -> Fast | 
     return replace(found, time=tuple(t + origin for t in found.time))
 
 
-def rate_of(recording: Recording) -> float:
-    """Return samples per second, by the median step."""
-    return 1 / float(np.median(np.diff(recording.timestamp)))
-
-
-def _portions(time: Array, stretch: slice, kernel: Kernel, step: float) -> Iterator[tuple[Array, slice]]:
-    first, last = time[stretch][0] + kernel.support, time[stretch][-1] - kernel.support
-    at = np.arange(first, last + 1e-9, step)
-    for start in range(0, len(at), _PORTION):
-        some = at[start : start + _PORTION]
-        left = max(stretch.start, int(np.searchsorted(time, some[0] - kernel.support, "left")) - 1)
-        right = min(stretch.stop, int(np.searchsorted(time, some[-1] + kernel.support, "right")) + 1)
-        if right - left > 2:
-            yield some, slice(left, right)
-
-
 def _track(recording: Recording, setup: Setup) -> tuple[_Track, Kernel, float]:
     n = setup.physics.dof
     time = recording.timestamp - recording.timestamp[0]
-    rate = rate_of(recording)
+    rate = recording.rate
     kernel = Kernel(min(CUTOFF, rate / SAMPLES_PER_PERIOD))
-    q, qd = recording.q[:, :n], speeds(recording)[:, :n]
+    everything, speed = recording.q, speeds(recording)
+    q, qd = everything[:, :n], speed[:, :n]
+    beyond = setup.frozen.lacking(everything, speed) if setup.frozen else np.zeros((len(q), 2 * n))
     hot = recording.joint_temperatures
     temperature = np.full_like(q, 30.0) if hot is None else hot[:, :n]
     load, calm, load_rate, motor = _load(time, q, qd, setup, kernel, rate)
     track = _Track(
         time, q, qd, recording.current[:, :n] * setup.gains, temperature, load, calm, load_rate, motor,
-        _since(time, qd), np.empty((len(q), n, 0)),
+        _since(time, qd), beyond, np.empty((len(q), n, 0)),
     )  # fmt: skip
     track = replace(track, measured=track.measured - _known(track, setup))
     return replace(track, held=_held(track, setup)), kernel, rate
@@ -177,9 +167,9 @@ def _load(
 ) -> tuple[Array, Array, Array, Array]:
     """Return load, calm, load_rate and motor of a `_Track`, each (T, N), by the setup's base parameters."""
     columns, n = setup.physics.regressor, setup.physics.dof
-    momentum = combined(columns, "momentum", setup.base, q=q, qd=qd)
-    rotors = combined(columns, "momentum", setup.physics.rotors, q=q, qd=qd)
-    beta = combined(columns, "beta", setup.base, q=q, qd=qd)
+    momentum = columns.combined("momentum", setup.base, q=q, qd=qd)
+    rotors = columns.combined("momentum", setup.physics.rotors, q=q, qd=qd)
+    beta = columns.combined("beta", setup.base, q=q, qd=qd)
     load, calm, slope, motor = (np.zeros_like(q) for _ in range(4))
     filtering, step = Filter(kernel), 1 / (4 * kernel.cutoff)
     for stretch in segments(time, GAP / rate):
@@ -239,7 +229,7 @@ def _own(track: _Track, part: slice, setup: Setup) -> Array:
     """Own columns of some samples (T, N, K)."""
     found, held = list[Array](), 0
     cache: dict[tuple[str, tuple[tuple[str, float], ...]], dict[str, Array]] = {}
-    sign = track.qd[part] / (np.abs(track.qd[part]) + WIDTH)
+    direction = signs.sign(track.qd[part], WIDTH)
     for c in setup.space.own:
         if c.term == "gain":
             found.append(-_torque(track, part, setup))
@@ -253,13 +243,13 @@ def _own(track: _Track, part: slice, setup: Setup) -> Array:
             if key not in cache:
                 cache[key] = term_columns(
                     c.term, dict(c.values), track.q[part], track.qd[part], track.load[part],
-                    track.temperature[part], np.ones(len(sign)),
+                    track.temperature[part], np.ones(len(direction)),
                 )  # fmt: skip
             found.append(cache[key][c.parameter])
     if setup.limits is not None:
         found += curves(
-            track.q[part], track.qd[part], track.load[part], track.temperature[part], track.since[part], sign,
-            setup.limits,
+            track.q[part], track.qd[part], track.load[part], track.temperature[part], track.since[part],
+            direction, setup.limits,
         )  # fmt: skip
     return np.stack(found, axis=2)
 
@@ -267,8 +257,8 @@ def _own(track: _Track, part: slice, setup: Setup) -> Array:
 def _torque(track: _Track, part: slice, setup: Setup) -> Array:
     """Drive torque (T, N) that the setup's parameters and friction expect."""
     qd = track.qd[part]
-    sign = qd / (np.abs(qd) + WIDTH)
-    return np.asarray(track.motor[part] + setup.friction[:, 0] * sign + setup.friction[:, 1] * qd, np.float64)
+    dry = setup.friction[:, 0] * signs.sign(qd, WIDTH)
+    return np.asarray(track.motor[part] + dry + setup.friction[:, 1] * qd, np.float64)
 
 
 def _common(track: _Track, part: slice, setup: Setup) -> tuple[Array, Array]:
@@ -280,8 +270,7 @@ def _common(track: _Track, part: slice, setup: Setup) -> tuple[Array, Array]:
     slope = slopes(setup.physics, setup.base - setup.physics.rotors, q, qd)
     flat = {k: _between(t, t[pick], v.reshape(len(pick), -1)).reshape(len(t), n, n) for k, v in slope.items()}
     load, rate = track.calm[part], track.load_rate[part]
-    flank = load / (np.abs(load) + _FLANK)
-    flank_rate = _FLANK / (np.abs(load) + _FLANK) ** 2 * rate
+    flank, flank_rate = signs.sign(load, _FLANK), signs.slope(load, _FLANK) * rate
     moved, kept = list[Array](), list[Array]()
     for dq, dv in ((None, None), (-load, -rate), (-flank, -flank_rate)):
         for j in range(n):
@@ -302,11 +291,14 @@ def _common(track: _Track, part: slice, setup: Setup) -> tuple[Array, Array]:
         for delay in DELAYS:
             moved.append(np.zeros_like(load))
             kept.append((_between(np.maximum(t - delay, t[0]), t, torque) - torque) / delay)
+    if setup.frozen is not None:
+        moved.append(track.beyond[part, :n])
+        kept.append(-track.beyond[part, n:])
     return np.stack(moved, axis=2), np.stack(kept, axis=2)
 
 
-def common_names(dof: int) -> tuple[str, ...]:
-    """Return the names of the columns of `_common`."""
+def common_names(dof: int, frozen: bool = False) -> tuple[str, ...]:
+    """Return the names of the columns of `_common`; frozen: whether joints beyond the model move."""
     joints = range(1, dof + 1)
     per_joint = [f"{kind}{j}" for kind in ("encoder", "elasticity", "backlash") for j in joints]
     return (
@@ -314,6 +306,7 @@ def common_names(dof: int) -> tuple[str, ...]:
         "roll",
         "pitch",
         *(f"{x}{k + 1}" for x in ("delay", "reversal") for k in range(len(DELAYS))),
+        *(["frozen"] if frozen else []),
     )
 
 

@@ -32,13 +32,13 @@ def sharpened(evidence: Evidence, judged: Judged) -> dict[int, Sharp]:
         same = [x for x in of_key(evidence.found.each, c.key) if x.terms == c.terms]
         if len(same) < 3:
             continue
-        heights = [s.evidence for s in scored(evidence, without(evidence, judged, k), judged.mean, same)]
+        heights = [s.evidence for s in scored(evidence, without(judged, k), same)]
         value, std = peak([dict(x.values)[free[0]] for x in same], heights)
         found[k] = Sharp({free[0]: value}, std)
     return found
 
 
-def without(evidence: Evidence, judged: Judged, k: int) -> Directions:
+def without(judged: Judged, k: int) -> Directions:
     """Return the model of all findings but the k-th."""
     size = len(judged.model)
     widths = [len(a.score.candidate.columns) for a in judged.accepted]

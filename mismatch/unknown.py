@@ -1,16 +1,14 @@
 """The honest rest: something that no name of the catalogue explains, with its place and a flexible curve."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .candidates import Candidate
-from .episodes import Episode
 from .evidence import Evidence
 from .judging import EVIDENCE, SHADOW, STEADY, Judged, effective
-from .naming import Scored, scored
+from .naming import scored
 
 Array = NDArray[np.float64]
 
@@ -26,17 +24,13 @@ class Unknown:
 
     joint: int
     share: float
-    score: Scored | None
-    reason: str
 
 
-def unknowns(
-    evidence: Evidence, weighed: Evidence, judged: Judged, found: Sequence[Episode]
-) -> list[Unknown]:
-    """Return joints on which a flexible curve, or noise that changed, remains after all names."""
+def unknowns(evidence: Evidence, weighed: Evidence, judged: Judged) -> list[Unknown]:
+    """Return joints on which a flexible curve remains after all names; weighed: by what these leave."""
     curves = [Candidate("unknown", j, c) for j, c in enumerate(evidence.found.curve)]
     result = list[Unknown]()
-    for s in scored(weighed, judged.model, judged.mean, curves):
+    for s in scored(weighed, judged.model, curves):
         j = s.candidate.joint
         assert j is not None
         share = float(1 - np.exp(-2 * max(s.total, 0.0) / max(effective(evidence, j), 1.0)))
@@ -46,5 +40,5 @@ def unknowns(
         if s.evidence < SHADOW * named:
             continue
         if min(s.evidence, s.total) > _EVIDENCE and s.steadiness > _STEADY and share > _SHARE:
-            result.append(Unknown(j, share, s, "a smooth curve explains it, no name does"))
+            result.append(Unknown(j, share))
     return result

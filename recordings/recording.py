@@ -101,6 +101,11 @@ class Recording:
         """Last timestamp less the first, s; 0 when there is no row."""
         return float(self.timestamp[-1] - self.timestamp[0]) if len(self) else 0.0
 
+    @property
+    def rate(self) -> float:
+        """Samples per second, by the median step; 0 when there are fewer than two rows."""
+        return 1 / float(np.median(np.diff(self.timestamp))) if len(self) > 1 else 0.0
+
     def arrays(self) -> dict[str, FloatArray]:
         """Give the named channels that are there by field name: `timestamp`, `q`, `current`, `qd`, ..."""
         return {name: getattr(self, name) for name in FIELDS if getattr(self, name) is not None}
@@ -115,6 +120,14 @@ class Recording:
         """Leave out the optional fields `names`."""
         changes: dict[str, Any] = dict.fromkeys(names)
         return replace(self, **changes)
+
+    def lean(self) -> "Recording":
+        """Leave out what no fit uses: most targets, tool forces, other channels, and what reading dropped."""
+        return replace(self.without(_UNUSED), others={}, dropped=())
+
+
+#: Optional fields that no fit uses.
+_UNUSED = ("target_q", "target_qdd", "target_current", "target_moment", "actual_TCP_force")
 
 
 def concatenate(parts: Sequence[Recording]) -> Recording:

@@ -5,10 +5,11 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import Environment
 from markupsafe import Markup
 from plotly.offline import get_plotlyjs
 
+from ...templates import renderer
 from ..result import Explanation
 from . import wording as w
 from .figures import Figure, error_figure, threshold_figure
@@ -52,21 +53,16 @@ def report(explanation: Explanation) -> str:
 
 @cache
 def _environment() -> Environment:
-    environment = Environment(
-        loader=PackageLoader("residuum.templates", ""),
-        undefined=StrictUndefined,
-        autoescape=True,
-        trim_blocks=True,
-        lstrip_blocks=True,
+    return renderer(
+        {
+            "capital": w.capital,
+            "number": w.number,
+            "percent": w.percent,
+            "listed": w.listed,
+            "duration": w.duration,
+        },
+        html=True,
     )
-    environment.filters |= {
-        "capital": w.capital,
-        "number": w.number,
-        "percent": w.percent,
-        "listed": w.listed,
-        "duration": w.duration,
-    }
-    return environment
 
 
 def _context(e: Explanation) -> dict[str, Any]:

@@ -109,15 +109,16 @@ RIGID = (
     ),
     Effect(
         "frozen_joint_coupling",
-        "joints that the model takes as fixed are moving",
+        "the pull of moving joints that the model takes as fixed",
         (),
         "all",
         "Featherstone 2008",
         "vanishes when the joints that the model leaves out stand still",
         ("link_inertial", "payload", "dropped_coupling"),
         "move the wrist alone, then the other joints alone",
-        "generate the model with all joints (gen-model --dof 6)",
+        "explain and generate the model with all joints (--dof 6): one of fewer joints cannot hold it",
         r"Y_\mathrm{full}(q, \dot q, \ddot q)\,\pi - Y_\mathrm{reduced}\,\pi",
+        {"share": Parameter("1", "part of the torque that the published links predict", None, (0.5, 1.5))},
     ),
     Effect(
         "dropped_coupling",

@@ -2,13 +2,13 @@
 
 import json
 import subprocess
-import sys
 import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
-from answers import FILES, check, findings, names, residuum
+from answers import FILES, check, findings, names
+from commands import gen_model, residuum
 from json_schema import problems
 
 from residuum.codegen.load import STRICT_FLAGS, c_compiler, load_text
@@ -122,11 +122,7 @@ def generated_from(answer, tmp_path_factory):
     def of(kind: str) -> Path:
         if kind not in made:
             out = tmp_path_factory.mktemp(f"generated_{kind}")
-            call = "from residuum.cli.gen_model import main; main()"
-            model = answer(kind) / "model.toml"
-            done = subprocess.run(
-                [sys.executable, "-c", call, "--model", model, "--out", out], capture_output=True, text=True
-            )
+            done = gen_model("--model", answer(kind) / "model.toml", "--out", out)
             assert done.returncode == 0, done.stderr
             (made[kind],) = out.iterdir()
         return made[kind]

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from answers import FILES, check, findings, names, residuum
+from answers import FILES, check, findings, names
+from commands import residuum
 
 from residuum.cli.main import main
 from residuum.robots import load_robot

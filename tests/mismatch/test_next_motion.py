@@ -63,14 +63,14 @@ def evidence(wandered):
 
 @pytest.fixture(scope="module")
 def model(evidence):
-    return nuisance(evidence)[0]
+    return nuisance(evidence)
 
 
 @pytest.fixture(scope="module")
 def named(evidence, model):
     """Each name's hypothesis at the value that fits best."""
     found = {c.key: c for c in evidence.found.each}
-    return found | {s.candidate.key: s.candidate for s in ranked(evidence, model, nuisance(evidence)[1])}
+    return found | {s.candidate.key: s.candidate for s in ranked(evidence, model)}
 
 
 @pytest.fixture(scope="module")
@@ -134,7 +134,7 @@ def test_the_chosen_motion_tells_in_fact(wandered, evidence, model, named, offse
     """Made with the true arm and added to the recordings, it leads by what settles it; before, it did not."""
 
     def lead(some, fitted) -> float:
-        score = {s.candidate.key: s.evidence for s in ranked(some, *fitted)}
+        score = {s.candidate.key: s.evidence for s in ranked(some, fitted)}
         return score["current_offset", 0] - score["friction_asymmetry", 0]
 
     chosen = next(x for x in library(room, [0]) if np.array_equal(x.waypoints, offset.waypoints))
@@ -255,8 +255,8 @@ def test_payload_against_a_link_is_seen_with_the_wrist_turned() -> None:
     recording = Recording("held", t, q, torque / [j.drive_gain for j in model.joint], qd=qd)
     some = gather([recording], [True], model, robot)
     fitted = nuisance(some)
-    named = {s.candidate.key: s.candidate for s in ranked(some, *fitted)}
-    found = promises(some, fitted[0], [named["payload", None], named["link_inertial", 2]], room_of(some))
+    named = {s.candidate.key: s.candidate for s in ranked(some, fitted)}
+    found = promises(some, fitted, [named["payload", None], named["link_inertial", 2]], room_of(some))
     order = [p.experiment.name for p in sorted(found, key=lambda p: -p.rate)]
     assert "wrist_turned" in order[:2]
     assert order.index("wrist_turned") < order.index("full_range_sweep")

@@ -3,7 +3,8 @@
 from html import unescape
 
 import pytest
-from answers import check, findings, residuum
+from answers import check, findings
+from commands import residuum
 
 from residuum.mismatch.report.wording import title
 

@@ -7,7 +7,7 @@ from terms_by_hand import torque_by_hand
 
 from residuum.mismatch.columns import WIDTH
 from residuum.mismatch.physics import forces, tilts
-from residuum.mismatch.rows import DELAYS, make_rows, rate_of
+from residuum.mismatch.rows import DELAYS, make_rows
 from residuum.robots import load_robot
 from residuum.symbolic.tilt import tilted
 from residuum.virtual.model import build_model, link_frame
@@ -64,7 +64,7 @@ def test_a_term_is_explained_to_round_off(arm, along, term, linear, nonlinear, j
     space, explained = arm.setup.space, np.zeros(len(rows))
     for k, column in enumerate(space.own):
         same = {n: v for n, v in column.values if n != "width"} == nonlinear
-        if column.term == term and same:
+        if column.term == term and same and not column.soft:
             explained += rows.columns[joint][:, len(space.seen[joint]) + k] * linear[column.parameter]
     assert rms(rows.torque[:, joint]) > 0.05
     np.testing.assert_allclose(explained, rows.torque[:, joint], atol=1e-9 * np.abs(torque).max())
@@ -152,7 +152,7 @@ def test_a_force_needs_the_torque_of_mujocos_jacobian(arm) -> None:
 
 def test_the_median_step_says_the_rate(arm) -> None:
     time = instants(125.0, 0.2)
-    assert rate_of(arm.recording(time, np.zeros((len(time), 3)))) == pytest.approx(125.0, rel=0.02)
+    assert arm.recording(time, np.zeros((len(time), 3))).rate == pytest.approx(125.0, rel=0.02)
 
 
 def test_nothing_crosses_a_gap_and_short_stretches_give_no_rows(arm) -> None:

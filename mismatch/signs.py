@@ -1,0 +1,32 @@
+"""The terms' smooth sign and its slope along samples, in NumPy."""
+
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from ..symbolic.terms import smooth_sign
+
+Array = NDArray[np.float64]
+
+
+def sign(x: Array, width: float) -> Array:
+    """Return the smooth sign of samples (any shape), one half at `width`, which has their unit."""
+    return np.asarray(_compiled(0)(x, width), np.float64)
+
+
+def slope(x: Array, width: float) -> Array:
+    """Return the smooth sign's derivative by x, of x's shape, in 1 over its unit."""
+    return np.asarray(_compiled(1)(x, width), np.float64)
+
+
+@cache
+def _compiled(order: int) -> Callable[[Array, float], Array]:
+    """Return the smooth sign's derivative of an order; simplified, so that nothing cancels far from zero."""
+    x, width = sp.Symbol("x", real=True), sp.Symbol("width", positive=True)
+    found: Callable[[Array, float], Array] = sp.lambdify(
+        (x, width), sp.simplify(smooth_sign(x, width).diff(x, order)), "numpy"
+    )
+    return found
