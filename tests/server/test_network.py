@@ -143,8 +143,20 @@ def test_garbage_for_a_second_on_every_port(robot, port) -> None:
                 pass  # dropped, as it should be
     with client(robot) as rtde:
         assert np.diff(read(rtde, 50)[:, 0]) == pytest.approx(0.002, abs=1e-9)
-    assert robot.controller.arm.ticks > ticks + 200
+    robot.until(lambda: robot.controller.arm.ticks > ticks + 200)
     assert robot.controller.arm.state.rtde["actual_q"] == pytest.approx(held, abs=1e-3)
+
+
+def test_a_flood_of_dashboard_lines_is_cut_off_and_the_robot_goes_on(robot) -> None:
+    ticks = robot.controller.arm.ticks
+    with robot.connect("dashboard") as connection, pytest.raises(OSError):
+        for _ in range(1000):
+            connection.sendall(b"robotmode\n" * 10_000)
+    robot.heard("lines at once")
+    robot.until(lambda: robot.controller.arm.ticks > ticks + 200)
+    with robot.connect("dashboard") as connection:
+        connection.sendall(b"robotmode\n")
+        assert b"Connected" in connection.recv(200)
 
 
 def test_wrong_inputs_are_told_to_the_operator(robot) -> None:

@@ -48,8 +48,8 @@ def test_receive_and_dashboard(served) -> None:
         out["q"], out["mode"], out["runtime"] = r.getActualQ(), r.getRobotMode(), r.getRuntimeState()
         out["pose"], out["safety"] = r.getActualTCPPose(), r.getSafetyStatusBits()
         stamps = set()
-        end = time.time() + 0.5
-        while time.time() < end:
+        end = time.time() + 20  # how many the getter meets in a while is up to the load of the host
+        while time.time() < end and len(stamps) < 50:
             stamps.add(round(r.getTimestamp(), 6)); time.sleep(0.0005)
         out["stamps"] = sorted(stamps)
         d = dashboard_client.DashboardClient(host); d.connect()
@@ -61,7 +61,7 @@ def test_receive_and_dashboard(served) -> None:
     assert (said["mode"], said["runtime"], said["safety"]) == (7, 1, 1)
     assert (said["robotmode"], said["running"]) == ("Robotmode: RUNNING", False)
     assert said["version"].startswith(served[0])
-    assert len(said["stamps"]) > 10  # how many the getter meets is up to the load of the host
+    assert len(said["stamps"]) == 50
     assert all(round(t / 0.002) == pytest.approx(t / 0.002, abs=1e-3) for t in said["stamps"])
 
 
