@@ -2,9 +2,11 @@
 
 python benchmarks/real_noise.py RECORDINGS/unloaded_*.csv [--robot ur10e] [--repeats 2] [--seed 1]
 
-What the recordings lack by themselves is found first and kept as known. Then one effect at a time is added to
-the filtered torque of every run, at a stated rms over the residual's rms, with nonlinear values that stand on
-no grid. Right: the first new name is of the effect's family, on its joint where it has one.
+What the recordings lack by themselves is found first and taken off (masses and ripple stay in the model). Then one effect at a time is added to
+the filtered torque of every run, with nonlinear values that stand on no grid. Its size is the rms of what base
+parameters, offset, Coulomb and viscous friction leave of it (--whole: of all of it) over the residual's rms.
+Right: the first new name is of the effect's family, on its joint where it has one. Payloads, links and rotors
+are not among them: without a reference the base parameters of this arm are free, and hold them.
 """
 
 import argparse
@@ -18,15 +20,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from residuum.mismatch.columns import WIDTH, Column, space_of
-from residuum.mismatch.evidence import Evidence, gather, residual
+from residuum.mismatch.evidence import Evidence, gather, renewed, residual
 from residuum.mismatch.judging import Judged, judge
-from residuum.mismatch.naming import reweighed
+from residuum.mismatch.naming import chosen, nuisance, reweighed
 from residuum.mismatch.refit import parameters
-from residuum.mismatch.rows import Setup, make_rows
+from residuum.mismatch.rows import make_rows
 from residuum.recordings import Recording, read
 from residuum.recordings.audit import clean
 from residuum.robots import load_robot
 from residuum.symbolic.nominal import nominal_model
+from residuum.symbolic.terms import CATALOGUE
 
 Array = NDArray[np.float64]
 Added = tuple[Array, ...]  # (n, N) Nm by run
@@ -50,7 +53,7 @@ OWN = {
     "velocity_lag": ("lag", "A", (("lag", 0.009),)),
 }
 #: effect -> the candidate whose directions make it.
-SHARED = ("encoder_offset", "joint_elasticity", "base_tilt", "time_delay", "rotor_inertia", "payload")
+SHARED = ("encoder_offset", "joint_elasticity", "base_tilt", "time_delay")
 
 
 @dataclass(frozen=True)
@@ -76,41 +79,42 @@ def columns_of(recordings: Sequence[Recording], evidence: Evidence) -> dict[str,
     setup = replace(evidence.setup, space=space_of(physics.regressor, own, ()), limits=None)
     found: dict[str, list[Array]] = {name: [] for name in OWN}
     for recording in recordings:
-        rows = make_rows(recording, _plain(setup))
+        rows = make_rows(recording, setup)
         for k, name in enumerate(OWN):
             at = [len(setup.space.seen[j]) + k for j in range(physics.dof)]
             found[name].append(np.stack([rows.columns[j][:, a] for j, a in enumerate(at)], axis=1))
     return found
 
 
-def _plain(setup: Setup) -> Setup:
-    return setup
-
-
 def _with_width(term: str, values: tuple[tuple[str, float], ...]) -> tuple[tuple[str, float], ...]:
-    from residuum.symbolic.terms import CATALOGUE
-
     return (*values, ("width", WIDTH)) if "width" in CATALOGUE[term].parameters else values
 
 
 def cases(
-    evidence: Evidence, columns: dict[str, list[Array]], left: Sequence[Array], repeats: int, seed: int
+    evidence: Evidence,
+    columns: dict[str, list[Array]],
+    left: Sequence[Array],
+    repeats: int,
+    seed: int,
+    whole: bool,
 ) -> list[Case]:
-    """Draw every effect at every size, on joints by turns."""
+    """Draw every effect at every size, on a joint at random; whole: sizes are those of all of it."""
     rng, found = np.random.default_rng(seed), []
     noise = _rms(left, evidence)
+    see = (lambda x: x) if whole else _Visible(evidence).of
     for size in SIZES:
         for _ in range(repeats):
             for name, by_run in columns.items():
                 j = int(rng.integers(evidence.setup.space.dof))
                 only = [np.where(np.arange(x.shape[1]) == j, x, 0.0) for x in by_run]
-                found.append(_scaled(name, j, size, only, noise, evidence))
+                found.append(_scaled(name, j, size, only, see(only), noise, evidence))
             for name in SHARED:
                 some = [c for c in evidence.found.each if c.effect == name]
                 c = some[int(rng.integers(len(some)))]
                 vector = evidence.found.directions.vectors[:, list(c.columns)].toarray()
                 mix = vector @ (np.abs(rng.standard_normal(len(c.columns))) + 0.2)
-                found.append(_scaled(name, c.joint, size, _torques(evidence, mix), noise, evidence))
+                torque = _torques(evidence, mix)
+                found.append(_scaled(name, c.joint, size, torque, see(torque), noise, evidence))
     return found
 
 
@@ -128,11 +132,40 @@ def _rms(values: Sequence[Array], evidence: Evidence) -> Array:
     return np.asarray(np.sqrt(np.mean(joined**2, axis=0)), np.float64)
 
 
+class _Visible:
+    """What a baseline of free base parameters, offset, Coulomb and viscous friction leaves of a torque."""
+
+    def __init__(self, evidence: Evidence) -> None:
+        self.bases = []
+        for j in range(evidence.setup.space.dof):
+            columns = np.concatenate([r.columns[j][:, self._plain(evidence, j)] for r in evidence.runs])
+            self.bases.append(np.linalg.svd(columns, full_matrices=False)[0])
+
+    @staticmethod
+    def _plain(evidence: Evidence, j: int) -> list[int]:
+        space = evidence.setup.space
+        start = len(space.seen[j])
+        own = [start + k for k, c in enumerate(space.own) if c.usual or c.term == "offset"]
+        return [*range(start), *own]
+
+    def of(self, torque: Sequence[Array]) -> list[Array]:
+        whole = np.concatenate(torque)
+        for j, basis in enumerate(self.bases):
+            whole[:, j] -= basis @ (basis.T @ whole[:, j])
+        return np.split(whole, np.cumsum([len(x) for x in torque])[:-1])
+
+
 def _scaled(
-    name: str, joint: int | None, size: float, torque: Sequence[Array], noise: Array, evidence: Evidence
+    name: str,
+    joint: int | None,
+    size: float,
+    torque: Sequence[Array],
+    visible: Sequence[Array],
+    noise: Array,
+    evidence: Evidence,
 ) -> Case:
-    """Bring an effect to a size: the largest ratio of its rms to the residual's over the joints."""
-    ratio = float(np.max(_rms(torque, evidence) / noise))
+    """Bring an effect to a size: the largest ratio of its visible rms to the residual's over the joints."""
+    ratio = float(np.max(_rms(visible, evidence) / noise))
     return Case(name, joint, size, tuple(x * size / max(ratio, 1e-12) for x in torque))
 
 
@@ -148,18 +181,48 @@ def answer(evidence: Evidence, known: Judged, case: Case) -> tuple[str, bool]:
     return FAMILY.get(c.effect, c.effect), c.joint == case.joint or case.joint is None
 
 
-def run(paths: Sequence[Path], robot: str, repeats: int, seed: int, say: Callable[[str], None]) -> None:
+def everything(evidence: Evidence, known: Judged | None = None) -> Judged:
+    """Judge until nothing more is found: what the recordings lack by themselves."""
+    known = known or judge(evidence)
+    while (more := judge(reweighed(evidence, known.model), known=known)).accepted:
+        known = replace(more, accepted=known.accepted + more.accepted)
+    return known
+
+
+def taken_off(evidence: Evidence, known: Judged) -> tuple[Evidence, Judged]:
+    """Return the recordings without what they lack by themselves, and what still stands of it in the model."""
+    theta = parameters(evidence, known.model)
+    stays = [a for a in known.accepted if a.score.candidate.effect in ("base_free", "torque_ripple")]
+    gone = [c for a in known.accepted if a not in stays for c in a.score.candidate.columns]
+    moved = np.unique(evidence.found.directions.take(gone).vectors.nonzero()[0])
+    vector = np.zeros(evidence.setup.space.size)
+    vector[moved] = theta[moved]
+    runs = [
+        replace(r, torque=r.torque - x)
+        for r, x in zip(evidence.runs, _torques(evidence, vector), strict=True)
+    ]
+    model = nuisance(evidence)
+    for a in stays:
+        model = chosen(model, evidence, a.score.candidate)
+    return renewed(evidence, runs), Judged(tuple(stays), model, ())
+
+
+def run(
+    paths: Sequence[Path], robot: str, repeats: int, seed: int, whole: bool, say: Callable[[str], None]
+) -> None:
     """Print one line a size."""
     data, digest = load_robot(robot)
     recordings = [clean(read(p))[0] for p in paths]
     evidence = gather(recordings, [True] * len(paths), nominal_model(data, digest, len(data.joint)), data)
-    known = judge(evidence)
+    known = everything(evidence)
     say(
         "known: " + ", ".join(f"{a.score.candidate.effect} {a.score.candidate.joint}" for a in known.accepted)
     )
+    evidence, known = taken_off(evidence, known)
+    known = everything(evidence, known)  # what only shows now that the rest is gone
     theta = parameters(evidence, known.model)
     left = [residual(r, evidence.setup.space, theta) for r in evidence.runs]
-    drawn = cases(evidence, columns_of(recordings, evidence), left, repeats, seed)
+    drawn = cases(evidence, columns_of(recordings, evidence), left, repeats, seed, whole)
     results: dict[float, list[tuple[Case, str, bool]]] = {s: [] for s in SIZES}
     begun = time.perf_counter()
     for k, case in enumerate(drawn, start=1):
@@ -193,8 +256,9 @@ def main() -> None:
     parser.add_argument("--robot", default="ur10e")
     parser.add_argument("--repeats", type=int, default=1)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--whole", action="store_true", help="sizes of all of an effect")
     a = parser.parse_args()
-    run(a.recordings, a.robot, a.repeats, a.seed, print)
+    run(a.recordings, a.robot, a.repeats, a.seed, a.whole, print)
 
 
 if __name__ == "__main__":

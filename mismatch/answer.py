@@ -16,10 +16,11 @@ from ..symbolic.effects import EFFECTS
 from ..symbolic.terms import CATALOGUE
 from ..symbolic.terms.forms import equation
 from .candidates import Candidate
+from .carried import Carried
 from .episodes import Contact, Episode, involved
 from .evidence import Evidence
 from .judging import Accepted, Judged, effective
-from .quantities import Quantity, parameters_of, quantity
+from .quantities import Quantity, parameters_of, payload_numbers, quantity
 from .refit import LeftOut, observed_runs
 from .report.wording import joints_text, title
 from .result import Explanation, NextMotion, Proof, Region, RuledOut, Source, Trace
@@ -55,12 +56,14 @@ class Parts:
     lacks: tuple[str, ...]
     model: Model
     next_motion: NextMotion | None = None
+    carried: Carried | None = None
 
 
 def compose(p: Parts) -> Explanation:
     """Return the whole answer."""
     strengths = [(_strength(p, a), _named(p, k, a)) for k, a in enumerate(p.judged.accepted) if a.is_finding]
     strengths += [(_squares(p), f) for f in _contact(p)]
+    strengths += [(c.evidence, _carried(p, c)) for c in (p.carried,) if c]
     findings = [f for _, f in sorted(strengths, key=lambda x: -x[0])]
     strange = _strange(p)
     findings += strange
@@ -149,9 +152,35 @@ def _shares(p: Parts, joints: Sequence[int], a: Accepted) -> dict[int, float]:
     for j in joints:
         same = [x for x in p.judged.accepted if x.is_finding and x.score.candidate.joint in (None, j - 1)]
         part = a.score.evidence / max(sum(x.score.evidence for x in same), 1e-12)
-        whole = 1 - (after[j - 1] / max(before[j - 1], 1e-12)) ** 2
+        whole = 1 - (after[j - 1] / max(before[j - 1], 1e-12)) ** 2 - _carried_share(p, j - 1)
         found[j] = float(np.clip(whole * part, 0, 1))
     return found
+
+
+def _carried(p: Parts, load: Carried) -> dict[str, Any]:
+    """Return the finding of a load that is picked up and put down: a payload with intervals."""
+    joints = list(range(1, p.evidence.setup.space.dof + 1))
+    return {
+        "effect": "payload",
+        "joints": joints,
+        "indistinguishable_from": [],
+        "confidence": 0.95,
+        "parameters": payload_numbers(load.value, load.covariance, p.nominal),
+        "equation": EFFECTS["payload"].equation,
+        "share": {str(j): round(_carried_share(p, j - 1), 3) for j in joints},
+        "intervals": [[round(x, 3) for x in span] for span in load.intervals],
+        "next_motion": None,
+    }
+
+
+def _carried_share(p: Parts, j: int) -> float:
+    """Share of a joint's unexplained left-out variance that the load takes where it is held."""
+    if p.carried is None:
+        return 0.0
+    left = np.concatenate([e[:, j] for e in p.before.residual])
+    load = np.concatenate([t[:, j] for t in p.carried.torque])
+    rest = float(np.sum((left - load) ** 2)) / max(float(np.sum(left**2)), 1e-12)
+    return float(np.clip(1 - rest, 0, 1))
 
 
 def _contact(p: Parts) -> list[dict[str, Any]]:
@@ -236,10 +265,18 @@ def sentence(verdict: str, findings: Sequence[Mapping[str, Any]]) -> str:
         return "These recordings cannot be used: nothing was concluded from them."
     named = [f for f in findings if f["effect"] != "unknown"]
     unknown = sorted({j for f in findings if f["effect"] == "unknown" for j in f["joints"]})
-    parts = [f"{title(f['effect'])} on {joints_text(f['joints'])}{_numbers(f['parameters'])}" for f in named]
+    parts = [
+        f"{title(f['effect'])}{_held(f)} on {joints_text(f['joints'])}{_numbers(f['parameters'])}"
+        for f in named
+    ]
     if unknown:
         parts.append(f"{title('unknown')} on {joints_text(unknown)}")
     return "Missing from the model: " + "; and ".join(parts) + "."
+
+
+def _held(finding: Mapping[str, Any]) -> str:
+    count = len(finding.get("intervals", ())) if finding["effect"] == "payload" else 0
+    return f", held in {count} stretch{'es' * (count > 1)} of time," if count else ""
 
 
 def _numbers(parameters: Mapping[str, Quantity]) -> str:
@@ -277,6 +314,7 @@ def _traces(p: Parts) -> tuple[Trace, ...]:
     space = p.evidence.setup.space
     mattering = {a.score.candidate.joint for a in p.judged.accepted} | {u.joint for u in p.unknowns}
     mattering |= set(involved(p.episodes)) if p.episodes else set()
+    mattering |= set(range(space.dof)) if p.carried else set()
     joints = sorted(j for j in mattering if j is not None) or list(range(space.dof))
     found = []
     for i, run in enumerate(observed_runs(p.evidence)):

@@ -11,7 +11,7 @@ from ..symbolic.terms import CATALOGUE
 from .columns import GRIDS, ORDERS, SHORT, SOFT, TERMS, WIDTH, Column, Space
 from .flexible import names as curve_names
 from .physics import Physics
-from .rows import DELAYS
+from .rows import DELAYS, FLANK
 from .selection import Directions
 
 Array = NDArray[np.float64]
@@ -82,11 +82,12 @@ class Candidates:
 
 
 def candidates(
-    space: Space, physics: Physics, own_std: Array, common_std: dict[str, float], base_std: Array
+    space: Space, physics: Physics, own_std: Array, common_std: dict[str, float], base_std: Array, load: Array
 ) -> Candidates:
     """Return every hypothesis of the catalogue that is a column or an inertial direction.
 
-    own_std (N, K): prior width of each own column; base_std (B,): of a base parameter.
+    own_std (N, K): prior width of each own column; base_std (B,): of a base parameter. load (N, 2): range of
+    what each gear carries, Nm; a load that does not reverse, or barely, shows no slack.
     """
     vectors, std, each = list[Array](), list[float](), list[Candidate]()
 
@@ -114,6 +115,8 @@ def candidates(
     ):
         for j in range(space.dof):
             at = add(unit[space.common_index(f"{kind}{j + 1}")], common_std[kind])
+            if kind == "backlash" and not load[j, 0] < -2 * FLANK < 2 * FLANK < load[j, 1]:
+                continue
             each.append(Candidate(effect, j, (at,), positive=kind != "encoder"))
     tilt = [add(unit[space.common_index(x)], common_std["tilt"]) for x in ("roll", "pitch")]
     each.append(Candidate("base_tilt", None, tuple(tilt)))

@@ -63,8 +63,8 @@ BASELINE = ("coulomb", "viscous")
 WIDTH = 1e-4
 #: rad/s; widths at which Coulomb friction may change its sign instead, real or simulated.
 SOFT = (0.002, 0.01, 0.03)
-#: rad; presliding shorter than this is every gear's, and no finding.
-SHORT = 0.002
+#: rad; presliding shorter than this (the catalogue begins here) is every gear's, and no finding.
+SHORT = 0.005
 #: Ripple: orders per motor turn.
 ORDERS = (1.0, 2.0, 4.0)
 

@@ -1,7 +1,7 @@
 """Everything that naming works on: rows of all recordings, their noise, and the hypotheses."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -68,10 +68,10 @@ def gather(
     gear = float(robot.joint[0].gear)
     base_std = base_widths(model, physics.regressor.base)
     plain_own = (Column("coulomb", "Fc", (("width", WIDTH),)), Column("viscous", "Fv"), Column("offset", "c"))
-    none = np.zeros((physics.dof, 2))
+    still = np.zeros((physics.dof, 2))
     known = tuple(t for t in model.term if t.name not in BASELINE)
     space = space_of(physics.regressor, plain_own, ())
-    plain = Setup(physics, space, gains, physics.published, none, known=known)
+    plain = Setup(physics, space, gains, physics.published, still, known=known)
     progress("first fit")
     first = [make_rows(r, plain) for r in recordings]
     sides = list(observed)
@@ -80,9 +80,10 @@ def gather(
     q, qd, load, heat = _states(first)
     frozen = frozen_of(model, robot, recordings)
     own = (*own_columns(gear), *curve_columns())
+    limits = ranges(q, qd, load, heat)
     setup = Setup(
         physics, space_of(physics.regressor, own, common_names(physics.dof, frozen is not None)),
-        gains, base, friction, ranges(q, qd, load, heat), known, frozen,
+        gains, base, friction, limits, known, frozen,
     )  # fmt: skip
     progress("columns of every hypothesis")
     runs = [make_rows(r, setup) for r in recordings]
@@ -91,13 +92,22 @@ def gather(
     common_std = {
         "encoder": 0.05, "elasticity": 1e-3, "backlash": 0.01, "tilt": 0.2, "delay": 0.05, "frozen": SHARE,
     }  # fmt: skip
-    found = candidates(setup.space, physics, own_std, common_std, base_std)
+    found = candidates(setup.space, physics, own_std, common_std, base_std, limits.load)
     progress("noise")
-    healthy_rows = [r for r, o in zip(runs, sides, strict=True) if not o] or runs
-    std = np.concatenate([base_std, own_std.ravel(), widths(setup.space.common, 1e-12)])
-    _, scales = _fitted(healthy_rows, setup.space, physics.published, std)  # what the richest model leaves
-    folds = folds_of(runs, sides, scales, setup.space)
-    return Evidence(setup, tuple(runs), tuple(sides), scales, tuple(folds), found, base_std, torque, own_std)
+    none = equal_scales(physics.dof)
+    return renewed(Evidence(setup, (), tuple(sides), none, (), found, base_std, torque, own_std), runs)
+
+
+def renewed(evidence: Evidence, runs: Sequence[Rows]) -> Evidence:
+    """Return the evidence of other rows of the same recordings: their noise and folds anew."""
+    space, sides = evidence.setup.space, evidence.observed
+    healthy = [r for r, o in zip(runs, sides, strict=True) if not o] or runs
+    std = np.concatenate([evidence.base_std, evidence.own_std.ravel(), widths(space.common, 1e-12)])
+    _, scales = _fitted(
+        healthy, space, evidence.setup.physics.published, std
+    )  # what the richest model leaves
+    folds = folds_of(runs, sides, scales, space)
+    return replace(evidence, runs=tuple(runs), scales=scales, folds=tuple(folds), observed_scales=None)
 
 
 def _states(runs: Sequence[Rows]) -> tuple[Array, Array, Array, Array]:

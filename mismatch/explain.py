@@ -15,6 +15,7 @@ from ..robots import Robot
 from ..robots.model import Input, Model
 from ..symbolic.nominal import nominal_model
 from .answer import Parts, bad_data, compose
+from .carried import carried, unloaded
 from .coverage import cannot_show
 from .episodes import contact, episodes
 from .evidence import Evidence, gather, residual
@@ -86,6 +87,10 @@ def _explained(
     task: Task, nominal: Model, evidence: Evidence, recordings: Sequence[Recording],
     sources: tuple[Source, ...], lacks: tuple[str, ...], progress: Progress,
 ) -> Explanation:  # fmt: skip
+    progress("a load that comes and goes")
+    recorded, load = evidence, carried(evidence)
+    if load is not None:
+        evidence = unloaded(recorded, load)
     judged = judge(evidence, progress)
     progress("what is left")
     weighed = reweighed(evidence, judged.model)
@@ -107,7 +112,8 @@ def _explained(
     progress("proof on left-out blocks")
     kept = [a for a in judged.accepted if a.is_finding or not evidence.has_reference]
     baseline = plain(weighed, [a for a in kept if not a.is_finding])[0]
-    proof, before, after = prove(weighed, baseline, plain(weighed, kept)[0])
+    seen = None if load is None else reweighed(recorded, baseline)
+    proof, before, after = prove(weighed, baseline, plain(weighed, kept)[0], seen)
     gear = float(task.robot.joint[0].gear)
     runs = [evidence.runs[r] for r in which]
     places = regions(runs, names, before.residual, gear)
@@ -117,7 +123,7 @@ def _explained(
     model = refined(weighed, nominal, task.robot, judged.accepted, {k: s.value for k, s in sharp.items()})
     parts = Parts(
         task.robot, nominal, sources, evidence, judged, sharp, found, left, force, strange, proof, before,
-        after, rate, tuple(places), names, lacks, model, _proposal(task, weighed, judged, progress),
+        after, rate, tuple(places), names, lacks, model, _proposal(task, weighed, judged, progress), load,
     )  # fmt: skip
     return compose(parts)
 

@@ -22,6 +22,9 @@ STEADY, IMPROVED = 2.0, 0.6
 #: Or, where some folds tell far more than others (the warm ones, those with jerks): a size that no fold alone
 #: makes (jackknife), with nearly all folds improved, or surer and with twice the evidence.
 ALWAYS, CONSISTENT, SURE = 0.75, 4.0, 5.0
+#: Or the baseline bends to imitate it, so that left-out blocks gain little, but no block shakes its size, and
+#: twice the evidence counts how far the baseline had to bend: then this share of the left-out nats will do.
+UNSHAKEN, BENT = 8.0, 0.3
 #: A size that is not this many of its jackknife's standard errors away from zero is no size at all.
 SIZED = 3.0
 #: A named effect explains at least this share of what its joint's model leaves: less is of no use to anyone.
@@ -39,7 +42,7 @@ UNSEEN = ("coulomb_friction", "viscous_friction", "drive_gain")
 #: s; current and motion may be less than this apart without anything being wrong: a cycle and a half.
 SYNCHRONOUS = 0.003
 #: What builds up with travel or late is most of the Coulomb level, or it is something else.
-_PART_OF_COULOMB = {"presliding_hysteresis": 0.35, "velocity_lag": 0.25}
+_PART_OF_COULOMB = {"presliding_hysteresis": 0.2, "velocity_lag": 0.25}
 
 
 @dataclass(frozen=True)
@@ -87,16 +90,18 @@ def judge(
     model = known.model if known else nuisance(evidence)
     skip = ("base_free",) if evidence.has_reference else UNSEEN
     accepted, refused = list[Accepted](), list[tuple[Scored, str]]()
-    barred: set[Key] = set()
+    barred, hollow = set[Key](), set[Key]()
     tries = 0
     while len(accepted) < most and tries < TRIES:
         progress(f"hypotheses, round {len(accepted) + 1}")
-        order = [s for s in ranked(evidence, model, skip) if s.candidate.key not in barred]
+        every = ranked(evidence, model, skip)
+        order = [s for s in every if s.candidate.key not in barred]
         if not order or order[0].evidence < EVIDENCE:
             break
         best = _likelier(order)
         barred.add(best.candidate.key)
         if why := implausible(evidence, best):
+            hollow.add(best.candidate.key)
             refused.append((best, why))
             continue
         test = tested(evidence, model, best.candidate)
@@ -110,7 +115,7 @@ def judge(
         if why:
             refused.append((test, why))
             continue
-        alike, rivals = _rivals(evidence, model, best, [o for o in order if o is not best])
+        alike, rivals = _rivals(evidence, model, best, [o for o in every if o.candidate.key not in hollow])
         accepted.append(Accepted(test, alike, rivals, part))
         model = chosen(model, evidence, best.candidate)
     return Judged(tuple(accepted), model, tuple(refused))
@@ -153,13 +158,14 @@ def effective(evidence: Evidence, joint: int | None) -> float:
 
 def objection(test: Scored, part: float) -> str:
     """Return in words why a hypothesis is not believed, or nothing."""
-    if test.evidence < EVIDENCE or test.total < EVIDENCE:
+    unshaken = test.consistency >= UNSHAKEN and test.evidence >= 2 * EVIDENCE
+    if test.evidence < EVIDENCE or test.total < (BENT if unshaken else 1.0) * EVIDENCE:
         return f"evidence {min(test.evidence, test.total):.1f} nats, {EVIDENCE:g} asked"
     if test.consistency < SIZED:
         return f"its size is not the same over the recordings (jackknife t = {test.consistency:.1f})"
     consistent = test.improved >= ALWAYS and test.consistency >= CONSISTENT
     sure = test.total >= 2 * EVIDENCE and test.consistency >= SURE
-    if test.steadiness < STEADY and not (consistent or sure):
+    if test.steadiness < STEADY and not (consistent or sure or unshaken):
         return f"not steady over the recordings (t = {test.steadiness:.1f})"
     if test.improved < (0.5 if sure else IMPROVED):
         return f"improves only {100 * test.improved:.0f} % of the left-out parts"
@@ -196,12 +202,13 @@ def _rivals(
 ) -> tuple[tuple[Candidate, ...], tuple[tuple[Candidate, float, float], ...]]:
     """Split rivals into those that do as well and those beaten: (rival, nats, steadiness of the lead).
 
-    A rival acts on the same joint, or one of the two on all, and has little left to say once the best is in.
+    others: also those that were refused as not steady. A rival acts on the same joint, or one of the two on
+    all, and has little left to say once the best is in.
     """
     joint = best.candidate.joint
     near = [
         o for o in others
-        if o.evidence > RELATED * best.evidence
+        if o is not best and o.evidence > RELATED * best.evidence
         and o.candidate.effect not in ("base_free", best.candidate.effect)
         and (joint is None or o.candidate.joint in (None, joint))
     ][:12]  # fmt: skip

@@ -101,14 +101,10 @@ def _softened(evidence: Evidence, model: Directions) -> Directions:
     """Let each joint's Coulomb friction pass zero speed as gently as its rows ask for, if they do."""
     space, best = evidence.setup.space, log_evidence(evidence.sums, model)
     for j in range(space.dof):
-        tried = [
-            model + _of(space, [space.own_index(j, k)], [float(evidence.own_std[j, k])])
-            for k, c in enumerate(space.own)
-            if c.soft
-        ]
-        for other in tried:
-            if (found := log_evidence(evidence.sums, other)) > best:
-                best, model = found, other
+        for k in (k for k, c in enumerate(space.own) if c.soft):
+            softer = model + _of(space, [space.own_index(j, k)], [float(evidence.own_std[j, k])])
+            if (found := log_evidence(evidence.sums, softer)) > best:
+                best, model = found, softer
     return model
 
 

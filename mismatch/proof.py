@@ -17,11 +17,17 @@ _DRAWS, _SEED = 1000, 7
 FALSE_ALARMS = 1.0
 
 
-def prove(evidence: Evidence, before: Directions, after: Directions) -> tuple[Proof, LeftOut, LeftOut]:
-    """Compare two models on rows that neither has seen; also return what both leave there."""
+def prove(
+    evidence: Evidence, before: Directions, after: Directions, recorded: Evidence | None = None
+) -> tuple[Proof, LeftOut, LeftOut]:
+    """Compare two models on rows that neither has seen; also return what both leave there.
+
+    recorded: the rows as they were, for the first model, when something found was taken off `evidence`.
+    """
     curves = [c for joint in evidence.found.curve for c in joint]
     flexible = after + evidence.found.directions.take(curves)
-    first, last, best = (left_out(evidence, m) for m in (before, after, flexible))
+    first = left_out(recorded or evidence, before)
+    last, best = (left_out(evidence, m) for m in (after, flexible))
     moving = [evidence.runs[r].moving.max(axis=1) > 0.5 for r in observed_runs(evidence)]
     rms_first, rms_last, rms_best = (_rms(x, moving) for x in (first, last, best))
     ceiling = np.minimum(rms_best, rms_last)

@@ -79,14 +79,24 @@ def _term(
 
 
 def _payload(evidence: Evidence, before: Directions, model: Model) -> dict[str, Quantity]:
-    """Mass and centre of mass at the flange, in the frame of the last joint; the gains' doubt is in."""
-    space, physics = evidence.setup.space, evidence.setup.physics
-    links = physics.map.links[:, -10:]
-    vectors = np.zeros((space.size, 10))
+    vectors = sparse.csc_matrix(payload_directions(evidence))
+    own = Directions(vectors, _PAYLOAD, np.zeros(10, bool))
+    return payload_numbers(*eliminate(evidence.sums, before, own, None).solve(range(10)), model)
+
+
+def payload_directions(evidence: Evidence) -> Array:
+    """Return what a payload's ten parameters at the last frame are in the parameter space (P, 10)."""
+    links = evidence.setup.physics.map.links[:, -10:]
+    vectors = np.zeros((evidence.setup.space.size, 10))
     vectors[: len(links)] = links
-    own = Directions(sparse.csc_matrix(vectors), _PAYLOAD, np.zeros(10, bool))
-    whole = eliminate(evidence.sums, before, own, None)
-    value, covariance = whole.solve(range(10))
+    return vectors
+
+
+def payload_numbers(value: Array, covariance: Array, model: Model) -> dict[str, Quantity]:
+    """Return mass and centre of mass at the flange, in the frame of the last joint; the gains' doubt is in.
+
+    value (10,): kg, kg m, kg m^2 in the last joint's turned frame; covariance (10, 10).
+    """
     doubts = [j.drive_gain_std / j.drive_gain if j.drive_gain_std else GAIN_DOUBT for j in model.joint]
     doubt = float(np.sqrt(np.mean(np.square(doubts))))
     mass, spread = float(value[0]), float(np.sqrt(covariance[0, 0] + (doubt * value[0]) ** 2))

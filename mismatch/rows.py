@@ -14,7 +14,7 @@ from scipy.ndimage import gaussian_filter1d
 from ..codegen.columns import columns as term_columns
 from ..identify.kernel import Filter, Kernel, batches, portions, segments
 from ..identify.rows import GAP, REST, SAMPLES_PER_PERIOD
-from ..recordings import Recording, speeds
+from ..recordings import Recording
 from ..robots.model import TermData
 from ..symbolic.terms import CATALOGUE
 from . import signs
@@ -23,21 +23,26 @@ from .fast import Fast, fast_band
 from .flexible import Ranges, curves
 from .frozen import Frozen
 from .physics import Physics, slopes, tilts
+from .speed import smooth_speeds
 
 Array = NDArray[np.float64]
 
-#: Hz; lowered to an eighth of the recording's rate.
-CUTOFF = 15.0
+#: Hz; lowered to an eighth of the recording's rate. DERIVED: where speeds are derived from positions, whose
+#: noise is then differentiated twice.
+CUTOFF, DERIVED = 15.0, 10.0
+#: Hz; speeds are smoothed this much, as far as the rate allows: the rows' filter does not notice.
+FASTEST = 30.0
 #: Rows whose samples are worked on together.
 _PORTION = 300
 #: Hz; slopes of the rigid body are smooth: they are evaluated at least this often, and interpolated.
 _SLOPE_RATE = 100.0
 #: s; delays at which the torque's own change is taken, so that a coefficient is a delay near each.
 DELAYS = (0.004, 0.01, 0.02)
-#: s; a gear's wind-up is followed this fast: its rate is differentiated twice more, and so is its noise.
-WIND_UP = 0.04
+#: s; wind-up and delay are sought in torques no faster than this: noise of the acceleration is in the
+#: torque's error, too, and would pass for them (errors in variables).
+CALM = 0.04
 #: Nm; a gear's load within this of zero has no flank.
-_FLANK = 0.5
+FLANK = 0.5
 
 
 @dataclass(frozen=True)
@@ -88,8 +93,8 @@ class Rows:
 class _Track:
     """A recording's samples, joints of the model only: (T, N).
 
-    load: torque (Nm) that the gear carries; calm: without what is faster than WIND_UP, load_rate: calm's
-    rate; motor: load with the rotor's own inertia.
+    load: torque (Nm) that the gear carries; calm: without what is faster than CALM, load_rate: calm's
+    rate; motor: load with the rotor's own inertia; steady: motor without what is faster than CALM.
     """
 
     time: Array
@@ -101,6 +106,7 @@ class _Track:
     calm: Array
     load_rate: Array
     motor: Array
+    steady: Array
     since: Array
     beyond: Array  # (T, 2 N): momentum and beta that joints beyond the model add
     held: Array  # (T, N, H): columns that remember, made over the whole recording at once
@@ -135,19 +141,25 @@ def _track(recording: Recording, setup: Setup) -> tuple[_Track, Kernel, float]:
     n = setup.physics.dof
     time = recording.timestamp - recording.timestamp[0]
     rate = recording.rate
-    kernel = Kernel(min(CUTOFF, rate / SAMPLES_PER_PERIOD))
-    everything, speed = recording.q, speeds(recording)
+    kernel = Kernel(min(DERIVED if recording.qd is None else CUTOFF, rate / SAMPLES_PER_PERIOD))
+    everything, speed = recording.q, calm_speeds(recording)
     q, qd = everything[:, :n], speed[:, :n]
     beyond = setup.frozen.lacking(everything, speed) if setup.frozen else np.zeros((len(q), 2 * n))
     hot = recording.joint_temperatures
     temperature = np.full_like(q, 30.0) if hot is None else hot[:, :n]
-    load, calm, load_rate, motor = _load(time, q, qd, setup, kernel, rate)
     track = _Track(
-        time, q, qd, recording.current[:, :n] * setup.gains, temperature, load, calm, load_rate, motor,
+        time, q, qd, recording.current[:, :n] * setup.gains, temperature,
+        *_load(time, q, qd, setup, kernel, rate),
         _since(time, qd), beyond, np.empty((len(q), n, 0)),
     )  # fmt: skip
     track = replace(track, measured=track.measured - _known(track, setup))
     return replace(track, held=_held(track, setup)), kernel, rate
+
+
+def calm_speeds(recording: Recording) -> Array:
+    """Return the speeds (T, M), rad/s, that columns are made of."""
+    samples = SAMPLES_PER_PERIOD if recording.qd is None else 4  # a slope needs more of them
+    return smooth_speeds(recording, min(FASTEST, recording.rate / samples))
 
 
 def _known(track: _Track, setup: Setup) -> Array:
@@ -164,13 +176,13 @@ def _known(track: _Track, setup: Setup) -> Array:
 
 def _load(
     time: Array, q: Array, qd: Array, setup: Setup, kernel: Kernel, rate: float
-) -> tuple[Array, Array, Array, Array]:
-    """Return load, calm, load_rate and motor of a `_Track`, each (T, N), by the setup's base parameters."""
+) -> tuple[Array, Array, Array, Array, Array]:
+    """Return load, calm, load_rate, motor and steady of a `_Track`, each (T, N), by the setup's base."""
     columns, n = setup.physics.regressor, setup.physics.dof
     momentum = columns.combined("momentum", setup.base, q=q, qd=qd)
     rotors = columns.combined("momentum", setup.physics.rotors, q=q, qd=qd)
     beta = columns.combined("beta", setup.base, q=q, qd=qd)
-    load, calm, slope, motor = (np.zeros_like(q) for _ in range(4))
+    load, calm, slope, motor, steady = (np.zeros_like(q) for _ in range(5))
     filtering, step = Filter(kernel), 1 / (4 * kernel.cutoff)
     for stretch in segments(time, GAP / rate):
         own = time[stretch]
@@ -184,10 +196,12 @@ def _load(
         geared = coarse[:, :n] - coarse[:, n:]  # the motor turns its rotor itself, the gear does not
         motor[stretch] = _between(own, at, coarse[:, :n]) - beta[stretch]
         load[stretch] = _between(own, at, geared) - beta[stretch]
-        total = gaussian_filter1d(geared - _between(at, own, beta[stretch]), WIND_UP / step, axis=0)
+        still = _between(at, own, beta[stretch])
+        steady[stretch] = _between(own, at, gaussian_filter1d(coarse[:, :n] - still, CALM / step, axis=0))
+        total = gaussian_filter1d(geared - still, CALM / step, axis=0)
         calm[stretch] = _between(own, at, total)
         slope[stretch] = _between(own, at, np.gradient(total, step, axis=0))
-    return load, calm, slope, motor
+    return load, calm, slope, motor, steady
 
 
 def _since(time: Array, qd: Array) -> Array:
@@ -270,7 +284,7 @@ def _common(track: _Track, part: slice, setup: Setup) -> tuple[Array, Array]:
     slope = slopes(setup.physics, setup.base - setup.physics.rotors, q, qd)
     flat = {k: _between(t, t[pick], v.reshape(len(pick), -1)).reshape(len(t), n, n) for k, v in slope.items()}
     load, rate = track.calm[part], track.load_rate[part]
-    flank, flank_rate = signs.sign(load, _FLANK), signs.slope(load, _FLANK) * rate
+    flank, flank_rate = signs.sign(load, FLANK), signs.slope(load, FLANK) * rate
     moved, kept = list[Array](), list[Array]()
     for dq, dv in ((None, None), (-load, -rate), (-flank, -flank_rate)):
         for j in range(n):
@@ -285,9 +299,9 @@ def _common(track: _Track, part: slice, setup: Setup) -> tuple[Array, Array]:
     for k in range(2):
         moved.append(np.zeros_like(load))
         kept.append(turned[:, :, k])
-    body = track.motor[part]
+    body = track.steady[part]
     # what friction does at reversals depends on more than the clock, so it gets a coefficient of its own
-    for torque in (body, _torque(track, part, setup) - body):
+    for torque in (body, _torque(track, part, setup) - track.motor[part]):
         for delay in DELAYS:
             moved.append(np.zeros_like(load))
             kept.append((_between(np.maximum(t - delay, t[0]), t, torque) - torque) / delay)

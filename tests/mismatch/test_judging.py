@@ -41,6 +41,13 @@ def test_a_sure_size_may_gain_unevenly() -> None:
     assert "steady" in objection(scored(uneven, consistency=4.5), 0.3)
 
 
+def test_what_the_baseline_imitates_may_gain_little_when_nothing_shakes_it() -> None:
+    bent = [1.0, 0.5, 1.5, -0.5, 1.0]
+    assert objection(scored(bent, evidence=30.0, consistency=9.0), 0.3) == ""
+    assert "nats" in objection(scored(bent, evidence=15.0, consistency=9.0), 0.3)
+    assert "nats" in objection(scored(bent, evidence=30.0, consistency=7.0), 0.3)
+
+
 def test_one_block_proves_nothing() -> None:
     """Without a second block there is nothing to be steady over: no name."""
     with np.errstate(all="ignore"):

@@ -7,7 +7,7 @@ from terms_by_hand import torque_by_hand
 
 from residuum.mismatch.columns import WIDTH
 from residuum.mismatch.physics import forces, tilts
-from residuum.mismatch.rows import DELAYS, make_rows
+from residuum.mismatch.rows import DELAYS, calm_speeds, make_rows
 from residuum.robots import load_robot
 from residuum.symbolic.tilt import tilted
 from residuum.virtual.model import build_model, link_frame
@@ -52,9 +52,10 @@ def test_the_rigid_body_is_explained_by_its_parameters(arm, along, rate, jitter,
     ],
 )
 def test_a_term_is_explained_to_round_off(arm, along, term, linear, nonlinear, jitter) -> None:
-    """The torque is the term's own SymPy expression, sample by sample in plain Python."""
+    """The torque is the term's own SymPy expression, sample by sample in plain Python, of smoothed speeds."""
     time, joint = instants(125.0, jitter, 5.0), 1
-    q, qd, _ = along(time)
+    q = along(time)[0]
+    qd = calm_speeds(arm.recording(time, np.zeros((len(time), 3))))
     steps = np.diff(time, prepend=time[0] - np.median(np.diff(time)))
     values = linear | nonlinear | {"width": WIDTH}
     none = np.zeros(len(time))
