@@ -19,8 +19,9 @@ from numpy.typing import NDArray
 from residuum.mismatch.candidates import Candidate
 from residuum.mismatch.evidence import Evidence, gather, residual
 from residuum.mismatch.naming import nuisance, scored
+from residuum.mismatch.quantities import payload_columns
 from residuum.mismatch.refit import parameters
-from residuum.mismatch.rows import Rows, make_rows
+from residuum.mismatch.rows import make_rows
 from residuum.recordings import Recording, read
 from residuum.recordings.audit import clean
 from residuum.robots import load_robot
@@ -50,7 +51,7 @@ def loaded_error(evidence: Evidence, recording: Recording, theta: Array) -> tupl
     for _ in range(3):
         setup = replace(evidence.setup, base=evidence.setup.base + links @ payload)
         rows = make_rows(recording, setup)
-        left, columns = residual(rows, space, theta), _payload(rows, evidence, links)
+        left, columns = residual(rows, space, theta), payload_columns(evidence, rows)
         moving = rows.moving.max(axis=1) > 0.5
         scale = np.sqrt(np.mean(left[moving] ** 2, axis=0))
         a = np.concatenate([columns[moving, j] / scale[j] for j in range(space.dof)])
@@ -58,14 +59,6 @@ def loaded_error(evidence: Evidence, recording: Recording, theta: Array) -> tupl
         payload = np.linalg.solve(a.T @ a + np.diag(1 / WIDTHS**2), a.T @ b)
     rest = left - columns @ payload
     return np.sqrt(np.mean(rest[moving] ** 2, axis=0)), payload
-
-
-def _payload(rows: Rows, evidence: Evidence, links: Array) -> Array:
-    """Columns (n, N, 10) of the payload's parameters."""
-    space = evidence.setup.space
-    lifted = np.zeros((space.size, links.shape[1]))
-    lifted[: len(links)] = links
-    return np.stack([rows.columns[j] @ lifted[space.indices[j]] for j in range(space.dof)], axis=1)
 
 
 def run(unloaded: Sequence[Path], loaded: Sequence[Path], robot: str, joints: Sequence[int]) -> None:

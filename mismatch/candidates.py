@@ -1,6 +1,6 @@
 """Hypotheses: what may be missing, each as a few directions in the parameter space."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +15,6 @@ from .rows import DELAYS, FLANK
 from .selection import Directions
 
 Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -139,7 +138,9 @@ def candidates(
     return Candidates(directions, tuple(each), tuple(curve))
 
 
-def _inertial(space: Space, physics: Physics, base_std: Array, add, each: list[Candidate]) -> None:  # type: ignore[no-untyped-def]
+def _inertial(
+    space: Space, physics: Physics, base_std: Array, add: Callable[[Array, float], int], each: list[Candidate]
+) -> None:
     """Directions of a link's ten parameters, of a payload (the last link's) and of each rotor."""
 
     def lifted(direction: Array) -> Array:

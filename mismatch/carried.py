@@ -18,7 +18,7 @@ from .evidence import Evidence, renewed, residual
 from .grams import Scales, folds_of, regime, scales_of, weights
 from .naming import nuisance
 from .physics import forces
-from .quantities import payload_directions
+from .quantities import payload_columns
 from .refit import observed_runs
 from .rows import Rows
 from .segments import WINDOWS, Mask, first_guess, joined, segmented, stretches, sums_of, two_levels
@@ -132,7 +132,8 @@ def carried(evidence: Evidence) -> Carried | None:
     all the time may hide the load from the one, and the other may take the load for its own.
     """
     runs = tuple(
-        _Run(rows, _columns(evidence, rows)) for rows in (evidence.runs[r] for r in observed_runs(evidence))
+        _Run(rows, payload_columns(evidence, rows))
+        for rows in (evidence.runs[r] for r in observed_runs(evidence))
     )
     plain = nuisance(evidence)
     rich = plain + evidence.found.directions
@@ -183,11 +184,6 @@ def _blurred(found: _Try) -> list[Array]:
         near = maximum_filter1d(h, width) & ~minimum_filter1d(h, width)
         taken.append(load * np.where(near, np.clip(part, 0, 1), h)[:, None])
     return taken
-
-
-def _columns(evidence: Evidence, rows: Rows) -> Array:
-    space, lifted = evidence.setup.space, payload_directions(evidence)
-    return np.stack([rows.columns[j] @ lifted[space.indices[j]] for j in range(space.dof)], axis=1)
 
 
 def _first(evidence: Evidence, arm: Directions, runs: tuple[_Run, ...]) -> _Try | None:

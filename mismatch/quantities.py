@@ -12,6 +12,7 @@ from ..symbolic.terms import CATALOGUE
 from .candidates import Candidate
 from .evidence import Evidence
 from .naming import Scored
+from .rows import Rows
 from .selection import Directions, eliminate
 
 Array = NDArray[np.float64]
@@ -90,6 +91,12 @@ def payload_directions(evidence: Evidence) -> Array:
     vectors = np.zeros((evidence.setup.space.size, 10))
     vectors[: len(links)] = links
     return vectors
+
+
+def payload_columns(evidence: Evidence, rows: Rows) -> Array:
+    """Return the columns (n, N, 10) of a payload's ten parameters."""
+    space, lifted = evidence.setup.space, payload_directions(evidence)
+    return np.stack([rows.columns[j] @ lifted[space.indices[j]] for j in range(space.dof)], axis=1)
 
 
 def payload_numbers(value: Array, covariance: Array, model: Model) -> dict[str, Quantity]:

@@ -1,6 +1,6 @@
 """The refined model: published or referenced rigid body, Coulomb and viscous friction, and what was found."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -163,24 +163,26 @@ def _terms(
             if c.effect == "cable_spring":
                 at = next(space.own_index(c.joint, k) for k, x in enumerate(space.own) if x.term == "offset")
                 add("offset", c.joint, {}, {"c": (full[at], std[at])})
-        _shared_term(evidence, a, full, std, add)
+        for term, joint, linear in _shared_terms(evidence, a, full, std):
+            add(term, joint, {}, linear)
     return tuple(sorted((*evidence.setup.known, *found.values()), key=lambda t: t.joint))
 
 
-def _shared_term(evidence: Evidence, a: Accepted, full: Array, std: Mapping[int, float], add) -> None:  # type: ignore[no-untyped-def]
-    """Terms of effects whose columns reach all joints: the same number stands on each."""
+def _shared_terms(
+    evidence: Evidence, a: Accepted, full: Array, std: Mapping[int, float]
+) -> Iterator[tuple[str, int, dict[str, tuple[float, float]]]]:
+    """Give (term, joint, parameters with std) of effects whose columns reach all joints.
+
+    Slack has none: its blow is seen, and no term of a joint alone makes it.
+    """
     space, c = evidence.setup.space, a.score.candidate
     if c.effect == "time_delay":
         at = space.common_index(f"delay{DELAYS.index(c.values[0][1]) + 1}")
         for j in range(space.dof):
-            add("delay", j, {}, {"d": (full[at], std[at])})
-    if c.effect in ("joint_elasticity", "backlash") and c.joint is not None:
-        at = space.common_index(
-            f"{ {'joint_elasticity': 'elasticity', 'backlash': 'backlash'}[c.effect] }{c.joint + 1}"
-        )
-        inertia = _own_inertia(evidence, c.joint)
-        if c.effect == "joint_elasticity":
-            add("elasticity", c.joint, {}, {"c": (-inertia * full[at], inertia * std[at])})
+            yield "delay", j, {"d": (full[at], std[at])}
+    if c.effect == "joint_elasticity" and c.joint is not None:
+        at, inertia = space.common_index(f"elasticity{c.joint + 1}"), _own_inertia(evidence, c.joint)
+        yield "elasticity", c.joint, {"c": (-inertia * full[at], inertia * std[at])}
 
 
 def _own_inertia(evidence: Evidence, joint: int) -> float:
