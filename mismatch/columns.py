@@ -47,7 +47,7 @@ GRIDS: Mapping[tuple[str, str], tuple[float, ...]] = {
     ("power", "n"): (0.5,),
     ("tanh", "vt"): (0.3, 1.0),
     ("presliding", "zs"): (0.0003, 0.001, 0.003, 0.006, 0.012, 0.03),
-    ("lag", "lag"): (0.003, 0.006, 0.012, 0.02),
+    ("lag", "lag"): (0.003, 0.006, 0.012, 0.02, 0.04),
     ("position_dependent", "n"): (1.0, 2.0),
 }
 
@@ -63,8 +63,8 @@ BASELINE = ("coulomb", "viscous")
 WIDTH = 1e-4
 #: rad/s; widths at which Coulomb friction may change its sign instead, real or simulated.
 SOFT = (0.002, 0.01, 0.03)
-#: rad; presliding shorter than this (the catalogue begins here) is every gear's, and no finding.
-SHORT = 0.005
+#: rad; presliding shorter than this is every gear's, and no finding.
+SHORT = 0.002
 #: Ripple: orders per motor turn.
 ORDERS = (1.0, 2.0, 4.0)
 
