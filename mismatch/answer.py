@@ -29,7 +29,7 @@ from .unknown import Unknown
 
 Array = NDArray[np.float64]
 
-#: Of names on concealed cases, some outside the catalogue, this share was right where nothing spoke against it.
+#: On concealed cases (docs/trials.md), some outside the catalogue, this share of the surest names was right.
 SUREST = 0.85
 #: Of a joint's left-out squares, for episodes to be worth a word.
 _EPISODE_SHARE = 0.1
