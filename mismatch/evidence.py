@@ -18,8 +18,9 @@ from .flexible import ranges
 from .frozen import SHARE, frozen_of, widths
 from .grams import Fold, Scales, equal_scales, folds_of, scales_of, whole
 from .physics import physics_of
-from .rows import Rows, Setup, common_names, make_rows
+from .rows import Rows, common_names, make_rows
 from .selection import Sums
+from .track import Setup
 
 Array = NDArray[np.float64]
 

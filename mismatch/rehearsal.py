@@ -12,7 +12,8 @@ from .evidence import Evidence
 from .experiments import Experiment, Step
 from .grams import Scales, folds_of, whole
 from .room import Room
-from .rows import Rows, Setup, make_rows
+from .rows import Rows, make_rows
+from .track import Setup
 
 Array = NDArray[np.float64]
 

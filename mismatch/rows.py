@@ -9,59 +9,28 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
 from ..codegen.columns import columns as term_columns
 from ..identify.kernel import Filter, Kernel, batches, portions, segments
-from ..identify.rows import GAP, REST, SAMPLES_PER_PERIOD
+from ..identify.rows import GAP, REST
 from ..recordings import Recording
-from ..robots.model import TermData
-from ..symbolic.terms import CATALOGUE
 from . import signs
 from .columns import WIDTH, Space
 from .fast import Fast, fast_band
-from .flexible import Ranges, curves
-from .frozen import Frozen
-from .physics import Physics, slopes, tilts
-from .speed import smooth_speeds
+from .flexible import curves
+from .physics import slopes, tilts
+from .track import Setup, Track, between, remembers, sampled, track_of
 
 Array = NDArray[np.float64]
 
-#: Hz; lowered to an eighth of the recording's rate. DERIVED: where speeds are derived from positions, whose
-#: noise is then differentiated twice.
-CUTOFF, DERIVED = 15.0, 10.0
-#: Hz; speeds are smoothed this much, as far as the rate allows: the rows' filter does not notice.
-FASTEST = 30.0
 #: Rows whose samples are worked on together.
 _PORTION = 300
 #: Hz; slopes of the rigid body are smooth: they are evaluated at least this often, and interpolated.
 _SLOPE_RATE = 100.0
 #: s; delays at which the torque's own change is taken, so that a coefficient is a delay near each.
 DELAYS = (0.004, 0.01, 0.02)
-#: s; wind-up and delay are sought in torques no faster than this: noise of the acceleration is in the
-#: torque's error, too, and would pass for them (errors in variables).
-CALM = 0.04
 #: Nm; a gear's load within this of zero has no flank.
 FLANK = 0.5
-
-
-@dataclass(frozen=True)
-class Setup:
-    """What rows are made with. gains (N,) Nm/A; base (B,): parameters of loads and slopes.
-
-    friction (N, 2): Coulomb and viscous, of the torque that is delayed or scaled; limits: ranges of the
-    flexible curve (None: it is left out). known: terms whose torque is taken off what was measured. frozen:
-    the joints beyond (None: they stand still, or nothing is known of them).
-    """
-
-    physics: Physics
-    space: Space
-    gains: Array
-    base: Array
-    friction: Array
-    limits: Ranges | None = None
-    known: tuple[TermData, ...] = ()
-    frozen: Frozen | None = None
 
 
 @dataclass(frozen=True)
@@ -89,32 +58,9 @@ class Rows:
         return len(self.time)
 
 
-@dataclass(frozen=True)
-class _Track:
-    """A recording's samples, joints of the model only: (T, N).
-
-    load: torque (Nm) that the gear carries; calm: without what is faster than CALM, load_rate: calm's
-    rate; motor: load with the rotor's own inertia; steady: motor without what is faster than CALM.
-    """
-
-    time: Array
-    q: Array
-    qd: Array
-    measured: Array
-    temperature: Array
-    load: Array
-    calm: Array
-    load_rate: Array
-    motor: Array
-    steady: Array
-    since: Array
-    beyond: Array  # (T, 2 N): momentum and beta that joints beyond the model add
-    held: Array  # (T, N, H): columns that remember, made over the whole recording at once
-
-
 def make_rows(recording: Recording, setup: Setup) -> Rows:
     """Filter a clean recording. There may be no row at all: stretches shorter than the kernel give none."""
-    track, kernel, rate = _track(recording, setup)
+    track, kernel, rate = track_of(recording, setup)
     step = 1 / (4 * kernel.cutoff)
     pieces, starts, count = list[Rows](), list[int](), 0
     for stretch in segments(track.time, GAP / rate):
@@ -128,118 +74,16 @@ def make_rows(recording: Recording, setup: Setup) -> Rows:
     return replace(rows, fast=_fast(track, setup, kernel, origin))
 
 
-def _fast(track: _Track, setup: Setup, kernel: Kernel, origin: float) -> Fast | None:
+def _fast(track: Track, setup: Setup, kernel: Kernel, origin: float) -> Fast | None:
     own = [c for c in setup.space.own if c.term == "ripple"]
     if not own:
         return None
-    columns = [_column(track, slice(None), c.term, c.parameter, c.values) for c in own]
+    columns = [sampled(track, slice(None), c.term, c.parameter, c.values) for c in own]
     found = fast_band(track.time, track.measured, columns, track.qd, track.since, kernel.cutoff)
     return replace(found, time=tuple(t + origin for t in found.time))
 
 
-def _track(recording: Recording, setup: Setup) -> tuple[_Track, Kernel, float]:
-    n = setup.physics.dof
-    time = recording.timestamp - recording.timestamp[0]
-    rate = recording.rate
-    kernel = Kernel(min(DERIVED if recording.qd is None else CUTOFF, rate / SAMPLES_PER_PERIOD))
-    everything, speed = recording.q, calm_speeds(recording)
-    q, qd = everything[:, :n], speed[:, :n]
-    beyond = setup.frozen.lacking(everything, speed) if setup.frozen else np.zeros((len(q), 2 * n))
-    hot = recording.joint_temperatures
-    temperature = np.full_like(q, 30.0) if hot is None else hot[:, :n]
-    track = _Track(
-        time, q, qd, recording.current[:, :n] * setup.gains, temperature,
-        *_load(time, q, qd, setup, kernel, rate),
-        _since(time, qd), beyond, np.empty((len(q), n, 0)),
-    )  # fmt: skip
-    track = replace(track, measured=track.measured - _known(track, setup))
-    return replace(track, held=_held(track, setup)), kernel, rate
-
-
-def calm_speeds(recording: Recording) -> Array:
-    """Return the speeds (T, M), rad/s, that columns are made of."""
-    samples = SAMPLES_PER_PERIOD if recording.qd is None else 4  # a slope needs more of them
-    return smooth_speeds(recording, min(FASTEST, recording.rate / samples))
-
-
-def _known(track: _Track, setup: Setup) -> Array:
-    """Torque (T, N) of the terms that the nominal model has beside Coulomb and viscous friction."""
-    found = np.zeros_like(track.q)
-    for term in setup.known:
-        entry, j = CATALOGUE[term.name], term.joint - 1
-        values = {n: v for n, v in term.parameters.items() if n not in entry.linear_in}
-        for name in entry.linear_in:
-            column = _column(track, slice(None), term.name, name, tuple(values.items()))
-            found[:, j] += term.parameters.get(name, 0.0) * column[:, j]
-    return found
-
-
-def _load(
-    time: Array, q: Array, qd: Array, setup: Setup, kernel: Kernel, rate: float
-) -> tuple[Array, Array, Array, Array, Array]:
-    """Return load, calm, load_rate, motor and steady of a `_Track`, each (T, N), by the setup's base."""
-    columns, n = setup.physics.regressor, setup.physics.dof
-    momentum = columns.combined("momentum", setup.base, q=q, qd=qd)
-    rotors = columns.combined("momentum", setup.physics.rotors, q=q, qd=qd)
-    beta = columns.combined("beta", setup.base, q=q, qd=qd)
-    load, calm, slope, motor, steady = (np.zeros_like(q) for _ in range(5))
-    filtering, step = Filter(kernel), 1 / (4 * kernel.cutoff)
-    for stretch in segments(time, GAP / rate):
-        own = time[stretch]
-        at = np.arange(own[0], own[-1], step)
-        if len(own) < 8 or len(at) < 2:
-            continue
-        both, coarse = np.hstack([momentum[stretch], rotors[stretch]]), np.empty((len(at), 2 * n))
-        for rows, samples in batches(own, at, kernel):
-            _, derived = filtering.weights(own[samples], at[rows], (0, 1))
-            coarse[rows] = derived @ both[samples]
-        geared = coarse[:, :n] - coarse[:, n:]  # the motor turns its rotor itself, the gear does not
-        motor[stretch] = _between(own, at, coarse[:, :n]) - beta[stretch]
-        load[stretch] = _between(own, at, geared) - beta[stretch]
-        still = _between(at, own, beta[stretch])
-        steady[stretch] = _between(own, at, gaussian_filter1d(coarse[:, :n] - still, CALM / step, axis=0))
-        total = gaussian_filter1d(geared - still, CALM / step, axis=0)
-        calm[stretch] = _between(own, at, total)
-        slope[stretch] = _between(own, at, np.gradient(total, step, axis=0))
-    return load, calm, slope, motor, steady
-
-
-def _since(time: Array, qd: Array) -> Array:
-    """Seconds since each joint last changed its direction (T, N); rests in between do not count as one."""
-    found = np.empty_like(qd)
-    for j in range(qd.shape[1]):
-        moving = np.flatnonzero(np.abs(qd[:, j]) > REST)
-        direction = np.sign(qd[moving, j])
-        begins = moving[np.flatnonzero(np.diff(direction, prepend=0.0) != 0)] if len(moving) else moving
-        last = np.searchsorted(begins, np.arange(len(time)), "right") - 1
-        found[:, j] = np.where(last >= 0, time - time[begins[last]] if len(begins) else 9.0, 9.0)
-    return found
-
-
-def _remembers(term: str) -> bool:
-    return bool(CATALOGUE[term].state)
-
-
-def _held(track: _Track, setup: Setup) -> Array:
-    """Columns of the terms with memory (T, N, H), in the order of the space's own columns."""
-    found = [
-        _column(track, slice(None), c.term, c.parameter, c.values)
-        for c in setup.space.own
-        if c.term in CATALOGUE and _remembers(c.term)
-    ]
-    return np.stack(found, axis=2) if found else track.held
-
-
-def _column(
-    track: _Track, part: slice, term: str, parameter: str, values: tuple[tuple[str, float], ...]
-) -> Array:
-    dt = np.diff(track.time, prepend=track.time[0] - np.median(np.diff(track.time)))
-    return term_columns(
-        term, dict(values), track.q[part], track.qd[part], track.load[part], track.temperature[part], dt[part]
-    )[parameter]
-
-
-def _own(track: _Track, part: slice, setup: Setup) -> Array:
+def _own(track: Track, part: slice, setup: Setup) -> Array:
     """Own columns of some samples (T, N, K)."""
     found, held = list[Array](), 0
     cache: dict[tuple[str, tuple[tuple[str, float], ...]], dict[str, Array]] = {}
@@ -249,7 +93,7 @@ def _own(track: _Track, part: slice, setup: Setup) -> Array:
             found.append(-_torque(track, part, setup))
         elif c.term == "curve":
             continue
-        elif _remembers(c.term):
+        elif remembers(c.term):
             found.append(track.held[part, :, held])
             held += 1
         else:
@@ -268,21 +112,21 @@ def _own(track: _Track, part: slice, setup: Setup) -> Array:
     return np.stack(found, axis=2)
 
 
-def _torque(track: _Track, part: slice, setup: Setup) -> Array:
+def _torque(track: Track, part: slice, setup: Setup) -> Array:
     """Drive torque (T, N) that the setup's parameters and friction expect."""
     qd = track.qd[part]
     dry = setup.friction[:, 0] * signs.sign(qd, WIDTH)
     return np.asarray(track.motor[part] + dry + setup.friction[:, 1] * qd, np.float64)
 
 
-def _common(track: _Track, part: slice, setup: Setup) -> tuple[Array, Array]:
+def _common(track: Track, part: slice, setup: Setup) -> tuple[Array, Array]:
     """Columns that act on all joints: what is differentiated and what is kept, each (T, N, S)."""
     n, t = setup.physics.dof, track.time[part]
     every = max(1, int(1 / _SLOPE_RATE / max(float(np.median(np.diff(t))), 1e-6)))
     pick = np.unique(np.append(np.arange(0, len(t), every), len(t) - 1))
     q, qd = track.q[part][pick], track.qd[part][pick]
     slope = slopes(setup.physics, setup.base - setup.physics.rotors, q, qd)
-    flat = {k: _between(t, t[pick], v.reshape(len(pick), -1)).reshape(len(t), n, n) for k, v in slope.items()}
+    flat = {k: between(t, t[pick], v.reshape(len(pick), -1)).reshape(len(t), n, n) for k, v in slope.items()}
     load, rate = track.calm[part], track.load_rate[part]
     flank, flank_rate = signs.sign(load, FLANK), signs.slope(load, FLANK) * rate
     moved, kept = list[Array](), list[Array]()
@@ -295,7 +139,7 @@ def _common(track: _Track, part: slice, setup: Setup) -> tuple[Array, Array]:
                 b = b + flat["bv"][:, :, j] * dv[:, j : j + 1]
             moved.append(p)
             kept.append(-b)
-    turned = _between(t, t[pick], tilts(setup.physics, q).reshape(len(pick), -1)).reshape(len(t), n, 2)
+    turned = between(t, t[pick], tilts(setup.physics, q).reshape(len(pick), -1)).reshape(len(t), n, 2)
     for k in range(2):
         moved.append(np.zeros_like(load))
         kept.append(turned[:, :, k])
@@ -304,7 +148,7 @@ def _common(track: _Track, part: slice, setup: Setup) -> tuple[Array, Array]:
     for torque in (body, _torque(track, part, setup) - track.motor[part]):
         for delay in DELAYS:
             moved.append(np.zeros_like(load))
-            kept.append((_between(np.maximum(t - delay, t[0]), t, torque) - torque) / delay)
+            kept.append((between(np.maximum(t - delay, t[0]), t, torque) - torque) / delay)
     if setup.frozen is not None:
         moved.append(track.beyond[part, :n])
         kept.append(-track.beyond[part, n:])
@@ -324,16 +168,7 @@ def common_names(dof: int, frozen: bool = False) -> tuple[str, ...]:
     )
 
 
-def _between(at: Array, known: Array, values: Array) -> Array:
-    """Interpolate columns (K, C) from instants `known` to `at`."""
-    if len(known) == len(at) and np.array_equal(known, at):
-        return values
-    right = np.clip(np.searchsorted(known, at, "left"), 1, len(known) - 1)
-    share = np.clip((at - known[right - 1]) / (known[right] - known[right - 1]), 0, 1)[:, None]
-    return np.asarray((1 - share) * values[right - 1] + share * values[right], np.float64)
-
-
-def _filtered(track: _Track, part: slice, at: Array, setup: Setup, kernel: Kernel) -> Rows:
+def _filtered(track: Track, part: slice, at: Array, setup: Setup, kernel: Kernel) -> Rows:
     physics, n = setup.physics, setup.physics.dof
     q, qd, count = track.q[part], track.qd[part], part.stop - part.start
     momentum = physics.regressor.values("momentum", q=q, qd=qd)

@@ -12,7 +12,8 @@ from residuum.codegen.load import load_text
 from residuum.mismatch.candidates import own_columns
 from residuum.mismatch.columns import space_of
 from residuum.mismatch.physics import Physics, physics_of
-from residuum.mismatch.rows import Setup, common_names
+from residuum.mismatch.rows import common_names
+from residuum.mismatch.track import Setup
 from residuum.recordings import Recording
 from residuum.robots import Robot, load_robot
 from residuum.robots.model import Model

@@ -7,7 +7,8 @@ from terms_by_hand import torque_by_hand
 
 from residuum.mismatch.columns import WIDTH
 from residuum.mismatch.physics import forces, tilts
-from residuum.mismatch.rows import DELAYS, calm_speeds, make_rows
+from residuum.mismatch.rows import DELAYS, make_rows
+from residuum.mismatch.track import calm_speeds
 from residuum.robots import load_robot
 from residuum.symbolic.tilt import tilted
 from residuum.virtual.model import build_model, link_frame

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from residuum.mismatch.rows import calm_speeds
 from residuum.mismatch.speed import smooth_speeds
+from residuum.mismatch.track import calm_speeds
 from residuum.recordings import Recording
 
 

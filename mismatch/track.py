@@ -1,0 +1,189 @@
+"""From a recording to what its columns are made of, sample by sample.
+
+Speeds without noise, the torque that each gear carries, the time since reversals, and terms with memory.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
+
+from ..codegen.columns import columns as term_columns
+from ..identify.kernel import Filter, Kernel, batches, segments
+from ..identify.rows import GAP, REST, SAMPLES_PER_PERIOD
+from ..recordings import Recording
+from ..robots.model import TermData
+from ..symbolic.terms import CATALOGUE
+from .columns import Space
+from .flexible import Ranges
+from .frozen import Frozen
+from .physics import Physics
+from .speed import smooth_speeds
+
+Array = NDArray[np.float64]
+
+#: Hz; lowered to an eighth of the recording's rate. DERIVED: where speeds are derived from positions, whose
+#: noise is then differentiated twice.
+CUTOFF, DERIVED = 15.0, 10.0
+#: Hz; speeds are smoothed this much, as far as the rate allows: the rows' filter does not notice.
+FASTEST = 30.0
+#: s; wind-up and delay are sought in torques no faster than this: noise of the acceleration is in the
+#: torque's error, too, and would pass for them (errors in variables).
+CALM = 0.04
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What rows are made with. gains (N,) Nm/A; base (B,): parameters of loads and slopes.
+
+    friction (N, 2): Coulomb and viscous, of the torque that is delayed or scaled; limits: ranges of the
+    flexible curve (None: it is left out). known: terms whose torque is taken off what was measured. frozen:
+    the joints beyond (None: they stand still, or nothing is known of them).
+    """
+
+    physics: Physics
+    space: Space
+    gains: Array
+    base: Array
+    friction: Array
+    limits: Ranges | None = None
+    known: tuple[TermData, ...] = ()
+    frozen: Frozen | None = None
+
+
+@dataclass(frozen=True)
+class Track:
+    """A recording's samples, joints of the model only: (T, N).
+
+    load: torque (Nm) that the gear carries; calm: without what is faster than CALM, load_rate: calm's
+    rate; motor: load with the rotor's own inertia; steady: motor without what is faster than CALM.
+    """
+
+    time: Array
+    q: Array
+    qd: Array
+    measured: Array
+    temperature: Array
+    load: Array
+    calm: Array
+    load_rate: Array
+    motor: Array
+    steady: Array
+    since: Array
+    beyond: Array  # (T, 2 N): momentum and beta that joints beyond the model add
+    held: Array  # (T, N, H): columns that remember, made over the whole recording at once
+
+
+def track_of(recording: Recording, setup: Setup) -> tuple[Track, Kernel, float]:
+    """Return a recording's samples, the filter for its rows, and its rate, Hz."""
+    n = setup.physics.dof
+    time = recording.timestamp - recording.timestamp[0]
+    rate = recording.rate
+    kernel = Kernel(min(DERIVED if recording.qd is None else CUTOFF, rate / SAMPLES_PER_PERIOD))
+    everything, speed = recording.q, calm_speeds(recording)
+    q, qd = everything[:, :n], speed[:, :n]
+    beyond = setup.frozen.lacking(everything, speed) if setup.frozen else np.zeros((len(q), 2 * n))
+    hot = recording.joint_temperatures
+    temperature = np.full_like(q, 30.0) if hot is None else hot[:, :n]
+    track = Track(
+        time, q, qd, recording.current[:, :n] * setup.gains, temperature,
+        *_load(time, q, qd, setup, kernel, rate),
+        _since(time, qd), beyond, np.empty((len(q), n, 0)),
+    )  # fmt: skip
+    track = replace(track, measured=track.measured - _known(track, setup))
+    return replace(track, held=_held(track, setup)), kernel, rate
+
+
+def calm_speeds(recording: Recording) -> Array:
+    """Return the speeds (T, M), rad/s, that columns are made of."""
+    samples = SAMPLES_PER_PERIOD if recording.qd is None else 4  # a slope needs more of them
+    return smooth_speeds(recording, min(FASTEST, recording.rate / samples))
+
+
+def _known(track: Track, setup: Setup) -> Array:
+    """Torque (T, N) of the terms that the nominal model has beside Coulomb and viscous friction."""
+    found = np.zeros_like(track.q)
+    for term in setup.known:
+        entry, j = CATALOGUE[term.name], term.joint - 1
+        values = {n: v for n, v in term.parameters.items() if n not in entry.linear_in}
+        for name in entry.linear_in:
+            column = sampled(track, slice(None), term.name, name, tuple(values.items()))
+            found[:, j] += term.parameters.get(name, 0.0) * column[:, j]
+    return found
+
+
+def _load(
+    time: Array, q: Array, qd: Array, setup: Setup, kernel: Kernel, rate: float
+) -> tuple[Array, Array, Array, Array, Array]:
+    """Return load, calm, load_rate, motor and steady of a `Track`, each (T, N), by the setup's base."""
+    columns, n = setup.physics.regressor, setup.physics.dof
+    momentum = columns.combined("momentum", setup.base, q=q, qd=qd)
+    rotors = columns.combined("momentum", setup.physics.rotors, q=q, qd=qd)
+    beta = columns.combined("beta", setup.base, q=q, qd=qd)
+    load, calm, slope, motor, steady = (np.zeros_like(q) for _ in range(5))
+    filtering, step = Filter(kernel), 1 / (4 * kernel.cutoff)
+    for stretch in segments(time, GAP / rate):
+        own = time[stretch]
+        at = np.arange(own[0], own[-1], step)
+        if len(own) < 8 or len(at) < 2:
+            continue
+        both, coarse = np.hstack([momentum[stretch], rotors[stretch]]), np.empty((len(at), 2 * n))
+        for rows, samples in batches(own, at, kernel):
+            _, derived = filtering.weights(own[samples], at[rows], (0, 1))
+            coarse[rows] = derived @ both[samples]
+        geared = coarse[:, :n] - coarse[:, n:]  # the motor turns its rotor itself, the gear does not
+        motor[stretch] = between(own, at, coarse[:, :n]) - beta[stretch]
+        load[stretch] = between(own, at, geared) - beta[stretch]
+        still = between(at, own, beta[stretch])
+        steady[stretch] = between(own, at, gaussian_filter1d(coarse[:, :n] - still, CALM / step, axis=0))
+        total = gaussian_filter1d(geared - still, CALM / step, axis=0)
+        calm[stretch] = between(own, at, total)
+        slope[stretch] = between(own, at, np.gradient(total, step, axis=0))
+    return load, calm, slope, motor, steady
+
+
+def _since(time: Array, qd: Array) -> Array:
+    """Seconds since each joint last changed its direction (T, N); rests in between do not count as one."""
+    found = np.empty_like(qd)
+    for j in range(qd.shape[1]):
+        moving = np.flatnonzero(np.abs(qd[:, j]) > REST)
+        direction = np.sign(qd[moving, j])
+        begins = moving[np.flatnonzero(np.diff(direction, prepend=0.0) != 0)] if len(moving) else moving
+        last = np.searchsorted(begins, np.arange(len(time)), "right") - 1
+        found[:, j] = np.where(last >= 0, time - time[begins[last]] if len(begins) else 9.0, 9.0)
+    return found
+
+
+def remembers(term: str) -> bool:
+    """Return whether a term has a state."""
+    return bool(CATALOGUE[term].state)
+
+
+def _held(track: Track, setup: Setup) -> Array:
+    """Columns of the terms with memory (T, N, H), in the order of the space's own columns."""
+    found = [
+        sampled(track, slice(None), c.term, c.parameter, c.values)
+        for c in setup.space.own
+        if c.term in CATALOGUE and remembers(c.term)
+    ]
+    return np.stack(found, axis=2) if found else track.held
+
+
+def sampled(
+    track: Track, part: slice, term: str, parameter: str, values: tuple[tuple[str, float], ...]
+) -> Array:
+    """Return a term's column (T, N) along some samples: its torque by a linear parameter."""
+    dt = np.diff(track.time, prepend=track.time[0] - np.median(np.diff(track.time)))
+    return term_columns(
+        term, dict(values), track.q[part], track.qd[part], track.load[part], track.temperature[part], dt[part]
+    )[parameter]
+
+
+def between(at: Array, known: Array, values: Array) -> Array:
+    """Interpolate columns (K, C) from instants `known` to `at`."""
+    if len(known) == len(at) and np.array_equal(known, at):
+        return values
+    right = np.clip(np.searchsorted(known, at, "left"), 1, len(known) - 1)
+    share = np.clip((at - known[right - 1]) / (known[right] - known[right - 1]), 0, 1)[:, None]
+    return np.asarray((1 - share) * values[right - 1] + share * values[right], np.float64)
