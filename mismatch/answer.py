@@ -19,7 +19,7 @@ from .candidates import Candidate
 from .carried import Carried
 from .episodes import Contact, Episode, involved
 from .evidence import Evidence
-from .judging import Accepted, Judged, effective
+from .judging import EVIDENCE, Accepted, Judged, effective
 from .quantities import Quantity, parameters_of, payload_numbers, quantity
 from .refit import LeftOut, observed_runs
 from .report.wording import joints_text, title
@@ -31,8 +31,8 @@ Array = NDArray[np.float64]
 
 #: On concealed cases (docs/trials.md), some outside the catalogue, this share of the surest names was right.
 SUREST = 0.85
-#: Of a joint's left-out squares, for episodes to be worth a word.
-_EPISODE_SHARE = 0.1
+#: Of a joint's left-out squares, for episodes to be worth a word; nats, for those that are a force.
+_EPISODE_SHARE, _PUSH = 0.1, 10 * EVIDENCE
 
 
 @dataclass(frozen=True)
@@ -186,8 +186,8 @@ def _carried_share(p: Parts, j: int) -> float:
 
 
 def _contact(p: Parts) -> list[dict[str, Any]]:
-    """Episodes that reach several joints at once are forces from outside."""
-    if p.contact is None or max(_episode_share(p, j) for j in involved(p.episodes)) < _EPISODE_SHARE:
+    """Episodes that one force explains on several joints are forces from outside, however short they are."""
+    if p.contact is None or _squares(p) < _PUSH:
         return []
     joints = [j + 1 for j in involved(p.episodes)]
     return [
@@ -230,7 +230,7 @@ def _episode_share(p: Parts, j: int) -> float:
 
 def _strange(p: Parts) -> list[dict[str, Any]]:
     """Return what stays unexplained, a joint at a time."""
-    contact = p.contact is not None
+    contact = bool(_contact(p))
     shares = {u.joint: u.share for u in p.unknowns}
     if p.episodes and not contact:
         for j in involved(p.episodes):
