@@ -29,8 +29,8 @@ HIDDEN = {
     "coulomb_friction": [{"joint": FRICTION_JOINT, "torque": FRICTION}],
 }
 RATE, SPEED = 125, 8  # Hz of the recordings; times real time while they are made
-FIT = ("--term", "stribeck", "--false-alarms", "30")
-"""30 an hour is what two minutes of recording show; a robot at work needs hours of them and a lower rate."""
+FIT = ("--term", "stribeck", "--false-alarms", "2")
+"""2 an hour and joint lie beyond what two minutes of recording show; a robot at work needs hours of them."""
 STATES = {1: "measuring", 2: "guarding", 3: "stopping", 5: "holding", 6: "freedrive", 7: "refused"}
 
 
