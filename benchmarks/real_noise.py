@@ -2,8 +2,8 @@
 
 python benchmarks/real_noise.py RECORDINGS/unloaded_*.csv [--robot ur10e] [--repeats 2] [--seed 1]
 
-What the recordings lack by themselves is found first and taken off (masses and ripple stay in the model). Then one effect at a time is added to
-the filtered torque of every run, with nonlinear values that stand on no grid. Its size is the rms of what base
+What the recordings lack by themselves is found first and taken off (masses and ripple stay in the model).
+Then one effect at a time is added to the filtered torque of every run, with nonlinear values that stand on no grid. Its size is the rms of what base
 parameters, offset, Coulomb and viscous friction leave of it (--whole: of all of it) over the residual's rms.
 Right: the first new name is of the effect's family, on its joint where it has one. Payloads, links and rotors
 are not among them: without a reference the base parameters of this arm are free, and hold them.

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from residuum.mismatch.candidates import Candidate
 from residuum.mismatch.evidence import Evidence, gather, residual
 from residuum.mismatch.naming import nuisance, scored
-from residuum.mismatch.quantities import payload_columns
+from residuum.mismatch.quantities import PAYLOAD, payload_columns
 from residuum.mismatch.refit import parameters
 from residuum.mismatch.rows import make_rows
 from residuum.recordings import Recording, read
@@ -30,8 +30,6 @@ from residuum.symbolic.nominal import nominal_model
 Array = NDArray[np.float64]
 
 NAMES = ("load_dependent_friction", "position_dependent_friction")
-#: kg, kg m, kg m^2: prior widths of the payload's ten parameters.
-WIDTHS = np.array([10.0, 3.0, 3.0, 3.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
 
 
 def best_of(evidence: Evidence, effect: str, joint: int) -> Candidate:
@@ -43,7 +41,7 @@ def best_of(evidence: Evidence, effect: str, joint: int) -> Candidate:
 def loaded_error(evidence: Evidence, recording: Recording, theta: Array) -> tuple[Array, Array]:
     """Return the rms (N,) Nm of a loaded run with only the payload fitted, and the payload (10,).
 
-    The load that friction grows with includes the payload, so rows are made twice.
+    The load that friction grows with includes the payload, so rows are made anew.
     """
     space, physics = evidence.setup.space, evidence.setup.physics
     payload = np.zeros(10)
@@ -56,7 +54,7 @@ def loaded_error(evidence: Evidence, recording: Recording, theta: Array) -> tupl
         scale = np.sqrt(np.mean(left[moving] ** 2, axis=0))
         a = np.concatenate([columns[moving, j] / scale[j] for j in range(space.dof)])
         b = np.concatenate([left[moving, j] / scale[j] for j in range(space.dof)])
-        payload = np.linalg.solve(a.T @ a + np.diag(1 / WIDTHS**2), a.T @ b)
+        payload = np.linalg.solve(a.T @ a + np.diag(1 / PAYLOAD**2), a.T @ b)
     rest = left - columns @ payload
     return np.sqrt(np.mean(rest[moving] ** 2, axis=0)), payload
 

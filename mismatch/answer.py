@@ -64,10 +64,11 @@ class Parts:
 def compose(p: Parts) -> Explanation:
     """Return the whole answer."""
     strengths = [(_strength(p, a), _named(p, k, a)) for k, a in enumerate(p.judged.accepted) if a.is_finding]
-    strengths += [(_squares(p), f) for f in _contact(p)]
+    pushes = _contact(p)
+    strengths += [(_squares(p), f) for f in pushes]
     strengths += [(c.evidence, _carried(p, c)) for c in (p.carried,) if c]
     findings = [f for _, f in sorted(strengths, key=lambda x: -x[0])]
-    strange = _strange(p)
+    strange = _strange(p, bool(pushes))
     findings += strange
     verdict = _verdict(findings, strange)
     answer = {
@@ -228,9 +229,8 @@ def _episode_share(p: Parts, j: int) -> float:
     return float(min(inside / max(total, 1e-12), 1.0))
 
 
-def _strange(p: Parts) -> list[dict[str, Any]]:
-    """Return what stays unexplained, a joint at a time."""
-    contact = bool(_contact(p))
+def _strange(p: Parts, contact: bool) -> list[dict[str, Any]]:
+    """Return what stays unexplained, a joint at a time; contact: whether episodes have a name."""
     shares = {u.joint: u.share for u in p.unknowns}
     if p.episodes and not contact:
         for j in involved(p.episodes):

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
-from .evidence import Evidence, renewed, residual
-from .grams import Scales, folds_of, regime, scales_of, weights
+from .evidence import Evidence, renewed, residual, weighed
+from .grams import Scales, regime, scales_of, weights
 from .naming import nuisance
 from .physics import forces
 from .quantities import payload_columns
@@ -178,7 +178,7 @@ def _blurred(found: _Try) -> list[Array]:
     """Return the load's torque of each run (n, N): near a change of state the part of it that fits best."""
     taken = []
     for x, e, h in zip(found.runs, found.left, found.held, strict=True):
-        load, weight = x.columns @ found.value, _alike(x.rows, _scales(found.evidence))
+        load, weight = x.columns @ found.value, _alike(x.rows, found.evidence.noise)
         part = np.sum(weight * load * e, axis=1) / np.maximum(np.sum(weight * load**2, axis=1), 1e-300)
         width = 2 * round(_BLUR / x.rows.step) + 1
         near = maximum_filter1d(h, width) & ~minimum_filter1d(h, width)
@@ -206,8 +206,8 @@ def _first(evidence: Evidence, arm: Directions, runs: tuple[_Run, ...]) -> _Try 
     if nats < GUESS or sum(len(s.rows) for s in sums) < 2:
         return None
     none[run][part] = True
-    weighed = _weighed(evidence, scales)
-    return _Try(weighed, runs, none, _fitted(weighed, arm, runs, none))
+    anew = weighed(evidence, scales)
+    return _Try(anew, runs, none, _fitted(anew, arm, runs, none))
 
 
 def _settled(found: _Try, arm: Directions) -> _Try:
@@ -218,23 +218,12 @@ def _settled(found: _Try, arm: Directions) -> _Try:
         else:
             rest = [e - y for e, y in zip(found.left, found.load, strict=True)]
             scales = scales_of([x.rows for x in found.runs], rest)
-            evidence, held = _weighed(found.evidence, scales), _states(found, scales)
+            evidence, held = weighed(found.evidence, scales), _states(found, scales)
         changed = float(np.mean(np.concatenate(held) != np.concatenate(found.held)))
         found = _Try(evidence, found.runs, held, _fitted(evidence, arm, found.runs, held))
         if changed < _CHANGE or not 0 < found.share < 1:
             break
     return found
-
-
-def _weighed(evidence: Evidence, scales: Scales) -> Evidence:
-    """Weigh the observed rows by other scales."""
-    space = evidence.setup.space
-    folds = folds_of(evidence.runs, evidence.observed, evidence.scales, space, observed_scales=scales)
-    return replace(evidence, folds=tuple(folds), observed_scales=scales)
-
-
-def _scales(evidence: Evidence) -> Scales:
-    return evidence.observed_scales or evidence.scales
 
 
 def _alike(rows: Rows, scales: Scales) -> Array:
@@ -270,7 +259,7 @@ def _fitted(evidence: Evidence, arm: Directions, runs: Sequence[_Run], held: Seq
     a, r = normal_equations(sums, arm, sums.total)
     cross, own, right = np.zeros((space.size, len(_TEN))), np.zeros((len(_TEN),) * 2), np.zeros(len(_TEN))
     for x, h in zip(runs, held, strict=True):
-        weight = weights(x.rows, _scales(evidence)) * h[:, None]
+        weight = weights(x.rows, evidence.noise) * h[:, None]
         target = residual(x.rows, space, evidence.mean)
         for j in range(space.dof):
             weighted = x.columns[:, j] * weight[:, j, None]
@@ -319,7 +308,7 @@ def _each(found: _Try) -> list[tuple[float, float]]:
         middle = len(target) // 2
         first, second = slice(part.start, part.start + middle), slice(part.start + middle, part.stop)
         events = [(x, first, target[:middle]), (x, second, target[middle:])]
-    weight = [weights(x.rows, _scales(found.evidence))[part] for x, part, _ in events]
+    weight = [weights(x.rows, found.evidence.noise)[part] for x, part, _ in events]
     sums = [
         sums_of(x.columns[part], w, target, len(target))
         for (x, part, target), w in zip(events, weight, strict=True)
@@ -341,7 +330,7 @@ def _explained(found: _Try) -> tuple[float, float]:
     """
     load, rows, others = 0.0, np.zeros(2), np.zeros((2, 2))  # (pause or stretch, force or all)
     for x, e, y, h in zip(found.runs, found.left, found.load, found.held, strict=True):
-        root = np.sqrt(weights(x.rows, _scales(found.evidence)))
+        root = np.sqrt(weights(x.rows, found.evidence.noise))
         target = e * root
         columns = forces(found.evidence.setup.physics, x.rows.q, e.shape[1]) * root[:, :, None]
         gram = np.einsum("tji,tjk->tik", columns, columns) + 1e-6 * np.eye(3)

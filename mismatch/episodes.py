@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from .grams import Scales, regime
 from .physics import Physics, forces
 from .rows import Rows
+from .segments import stretches
 
 Array = NDArray[np.float64]
 
@@ -69,13 +70,12 @@ def episodes(
 
 
 def _joined(loud: NDArray[np.bool_], step: float) -> list[slice]:
-    edges = np.flatnonzero(np.diff(loud.astype(np.int8), prepend=0, append=0))
     parts = list[slice]()
-    for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
-        if parts and (a - parts[-1].stop) * step < PAUSE:
-            parts[-1] = slice(parts[-1].start, b)
+    for part in stretches(loud):
+        if parts and (part.start - parts[-1].stop) * step < PAUSE:
+            parts[-1] = slice(parts[-1].start, part.stop)
         else:
-            parts.append(slice(a, b))
+            parts.append(part)
     return [p for p in parts if (p.stop - p.start) * step >= SHORTEST]
 
 

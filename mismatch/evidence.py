@@ -48,6 +48,11 @@ class Evidence:
         """Whether there are recordings to compare with."""
         return not all(self.observed)
 
+    @property
+    def noise(self) -> Scales:
+        """Scales of the observed rows."""
+        return self.observed_scales or self.scales
+
     @cached_property
     def mean(self) -> Array:
         """Prior mean (P,) of all parameters: published base parameters, and nothing else."""
@@ -104,15 +109,21 @@ def renewed(evidence: Evidence, runs: Sequence[Rows]) -> Evidence:
     space, sides = evidence.setup.space, evidence.observed
     healthy = [r for r, o in zip(runs, sides, strict=True) if not o] or runs
     std = np.concatenate([evidence.base_std, evidence.own_std.ravel(), widths(space.common, 1e-12)])
-    _, scales = _fitted(
-        healthy, space, evidence.setup.physics.published, std
-    )  # what the richest model leaves
+    # noise is what the richest model leaves
+    _, scales = _fitted(healthy, space, evidence.setup.physics.published, std)
     folds = folds_of(runs, sides, scales, space)
     return replace(evidence, runs=tuple(runs), scales=scales, folds=tuple(folds), observed_scales=None)
 
 
 def _states(runs: Sequence[Rows]) -> tuple[Array, Array, Array, Array]:
     return tuple(np.concatenate([getattr(r, k) for r in runs]) for k in ("q", "qd", "load", "temperature"))  # type: ignore[return-value]
+
+
+def weighed(evidence: Evidence, scales: Scales) -> Evidence:
+    """Weigh the observed rows by other scales."""
+    space = evidence.setup.space
+    folds = folds_of(evidence.runs, evidence.observed, evidence.scales, space, observed_scales=scales)
+    return replace(evidence, folds=tuple(folds), observed_scales=scales)
 
 
 def _lifted(base: Array, space: Space) -> Array:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from .columns import Space
 from .fast import gram, noise
 from .rows import Rows
+from .segments import stretches
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -73,9 +74,8 @@ def weights(rows: Rows, scales: Scales) -> Array:
 def _alike(rest: NDArray[np.bool_], inflation: float) -> Array:
     """Rows that tell the same as a row: in motion the memory, at rest the whole rest (static friction)."""
     found = np.full(len(rest), inflation)
-    edges = np.flatnonzero(np.diff(rest.astype(np.int8), prepend=0, append=0))
-    for a, b in zip(edges[::2], edges[1::2], strict=True):
-        found[a:b] = b - a
+    for part in stretches(rest):
+        found[part] = part.stop - part.start
     return found
 
 

@@ -207,9 +207,8 @@ def _shadow(test: Scored, accepted: Sequence[Accepted], joints: int) -> str:
     c = test.candidate
     for a in accepted:
         first = a.score.candidate
-        part = (
-            SHADOW if first.joint is not None else SHADOW / joints
-        )  # what acts on all has its evidence from all
+        # what acts on all has its evidence from all
+        part = SHADOW if first.joint is not None else SHADOW / joints
         if first.joint in (None, c.joint) and test.evidence < part * a.score.evidence:
             return f"is {100 * test.evidence / a.score.evidence:.1f} % of what {first.effect} explains there"
     return ""

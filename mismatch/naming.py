@@ -5,7 +5,7 @@ unknown effect so hides small ones until it is named, and never lends them its o
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +13,9 @@ from scipy import sparse
 
 from .candidates import Candidate
 from .columns import BASELINE, SHORT, Space
-from .evidence import Evidence, residual
+from .evidence import Evidence, residual, weighed
 from .frozen import widths
-from .grams import Scales, folds_of, scales_of
+from .grams import Scales, scales_of
 from .refit import observed_runs, parameters
 from .selection import Directions, Eliminated, eliminate, log_evidence
 
@@ -149,8 +149,7 @@ def reweighed(evidence: Evidence, model: Directions) -> Evidence:
                 np.maximum(scales.inflation, evidence.scales.inflation),
                 np.maximum(scales.fast, evidence.scales.fast),
             )
-        folds = folds_of(evidence.runs, evidence.observed, evidence.scales, space, observed_scales=scales)
-        evidence = replace(evidence, folds=tuple(folds), observed_scales=scales)
+        evidence = weighed(evidence, scales)
     return evidence
 
 
@@ -196,8 +195,7 @@ def ranked(evidence: Evidence, model: Directions, skip: Sequence[str] = ()) -> l
 
 def tested(evidence: Evidence, model: Directions, candidate: Candidate) -> Scored:
     """Score one hypothesis with the rows weighed by what is left once it is in."""
-    weighed = reweighed(evidence, chosen(model, evidence, candidate))
-    return scored(weighed, model, [candidate])[0]
+    return scored(reweighed(evidence, chosen(model, evidence, candidate)), model, [candidate])[0]
 
 
 def chosen(model: Directions, evidence: Evidence, candidate: Candidate) -> Directions:

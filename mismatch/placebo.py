@@ -51,7 +51,7 @@ def _evidence(evidence: Evidence, model: Directions, joint: int, columns: Sequen
     factor = cho_factor(a + np.diag(1 / model.std**2))
     rng, found = np.random.default_rng(_SEED), list[float]()
     runs = [evidence.runs[r] for r in observed_runs(evidence)]
-    weight = [weights(r, evidence.observed_scales or evidence.scales)[:, joint] for r in runs]
+    weight = [weights(r, evidence.noise)[:, joint] for r in runs]
     left = [residual(r, space, own)[:, joint] for r in runs]
     for _ in range(SHIFTS):
         same, whole = 0.0, 1e-300

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 #: Share by which a drive gain may be off when nothing has shown it (sources differ by 4-50 %).
 GAIN_DOUBT = 0.15
 #: Prior width of a payload's mass (kg), first moments (kg m) and inertias (kg m^2).
-_PAYLOAD = np.array([10.0, 3.0, 3.0, 3.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
+PAYLOAD = np.array([10.0, 3.0, 3.0, 3.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
 
 Quantity = Mapping[str, Any]
 
@@ -81,7 +81,7 @@ def _term(
 
 def _payload(evidence: Evidence, before: Directions, model: Model) -> dict[str, Quantity]:
     vectors = sparse.csc_matrix(payload_directions(evidence))
-    own = Directions(vectors, _PAYLOAD, np.zeros(10, bool))
+    own = Directions(vectors, PAYLOAD, np.zeros(10, bool))
     return payload_numbers(*eliminate(evidence.sums, before, own, None).solve(range(10)), model)
 
 
