@@ -25,10 +25,11 @@ BLOCK = 10.0
 FOLDS = 16
 #: Short recordings are cut into this many, but no shorter than a few times the residual's memory (s).
 FEWEST, SHORTEST = 5, 3.0
-#: Rows of a joint that moves in less than this share of the kernel are rest.
-_MOVES = 0.5
-#: s and rad/s: after a reversal, and when slow, friction is still building up.
-_REVERSAL, _SLOW = 0.3, 0.05
+#: Rows whose kernel holds more of a rest than this, or of zero speed, are mixed with it: at rest friction is
+#: anything within its Coulomb level, and where a joint passes through zero it is still building up.
+_MIXED = 0.05
+#: Rows of a joint in a regime, below which their scale is unknown.
+_FEW = 20
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class Fold:
 
 @dataclass(frozen=True)
 class Scales:
-    """Noise of each joint by regime, Nm (N, 3: free, reversal, rest), and rows per independent one (N,).
+    """Noise of each joint by regime, Nm (N, 3: free, through zero, rest), and rows per independent one (N,).
 
     fast (N,): variance of the fast band's torque times its samples per independent one, Nm^2.
     """
@@ -55,10 +56,9 @@ class Scales:
 
 
 def regime(rows: Rows) -> Indices:
-    """Return 0 free, 1 near a reversal or slow, 2 at rest, a row and joint (n, N)."""
-    rest = rows.moving < _MOVES
-    slow = (rows.since < _REVERSAL) | (np.abs(rows.qd) < _SLOW)
-    return np.where(rest, 2, np.where(slow, 1, 0)).astype(np.int64)
+    """Return 0 free, 1 passing through zero speed, 2 at rest, a row and joint (n, N)."""
+    rest, zero = rows.moving < 1 - _MIXED, rows.sliding < 1 - _MIXED
+    return np.where(rest, 2, np.where(zero, 1, 0)).astype(np.int64)
 
 
 def weights(rows: Rows, scales: Scales) -> Array:
@@ -146,7 +146,7 @@ def scales_of(runs: Sequence[Rows], residuals: Sequence[Array]) -> Scales:
             np.concatenate([e[w[:, j] == k, j] for e, w in zip(residuals, which, strict=True)])
             for k in range(3)
         ]
-        known = [_scale(x) for x in by]
+        known = [_scale(by[0]), _rms(by[1]), _rms(by[2])]
         best = min((s for s in known if s is not None), default=1.0)
         sigma[j] = [max(s, 0.3 * best) if s is not None else 3 * best for s in known]
         sigma[j, 1] = max(sigma[j, 1], sigma[j, 0])
@@ -164,13 +164,18 @@ def equal_scales(n: int) -> Scales:
     return Scales(np.ones((n, 3)), np.ones(n), np.full(n, np.inf))
 
 
+def _rms(errors: Array) -> float | None:
+    """Rms, of all of them: errors at zero speed have long tails; None from too few rows."""
+    return max(float(np.sqrt(np.mean(errors**2))), 1e-6) if len(errors) >= _FEW else None
+
+
 def _scale(errors: Array) -> float | None:
-    """Rms of what lies within three robust deviations; None from too few rows."""
-    if len(errors) < 20:
+    """Rms of what lies within four robust deviations; None from too few rows."""
+    if len(errors) < _FEW:
         return None
     middle = 1.4826 * float(np.median(np.abs(errors)))
     inside = np.abs(errors) <= 4 * max(middle, 1e-9)
-    return max(float(np.sqrt(np.mean(errors[inside] ** 2))), 1e-6)
+    return _rms(errors[inside])
 
 
 def _memory(series: Sequence[Array]) -> float:

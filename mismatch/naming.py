@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from .candidates import Candidate
-from .columns import BASELINE, SHORT, Space
+from .columns import BASELINE, SHORT, Column, Space
 from .evidence import Evidence, residual, weighed
 from .frozen import widths
 from .grams import Scales, scales_of
@@ -23,10 +23,10 @@ Array = NDArray[np.float64]
 
 #: Base parameters of the published model may be off by this share of their wide prior before it is a finding.
 TIGHT = 0.03
-#: Around standstill every gear differs from Coulomb's law by a few percent of it, in one shape or another.
-NEAR_REST, EVERY_GEAR = ("stribeck", "presliding", "lag"), 0.03
-#: rad; over so short a travel the whole Coulomb level may build up.
-SHORTEST = 3e-4
+#: Around standstill every gear differs from Coulomb's law by a few percent of it, in one shape or another,
+EVERY_GEAR = {"stribeck": 0.01, "presliding": 0.01, "lag": 0.03}
+#: and by much of it where it is narrower than this (Stribeck's speed, rad/s), or over less travel (rad).
+NARROW, MUCH, SHORTEST = 0.02, 0.3, 3e-4
 #: Of a column's prior width, for columns that only describe the reference's own imperfections.
 SHARES = (0.003, 0.01, 0.03, 0.1)
 BARE = 1e-4
@@ -84,11 +84,17 @@ def nuisance(evidence: Evidence) -> Directions:
             if c.usual:
                 keep.append(space.own_index(j, k))
                 std.append(float(evidence.own_std[j, k]))
-            elif c.term in NEAR_REST:
+            elif c.term in EVERY_GEAR:
                 keep.append(space.own_index(j, k))
-                travel = c.value.get("zs", SHORT)
-                std.append(level * (SHORTEST / travel if travel < SHORT else EVERY_GEAR))
+                std.append(level * _usual_part(c))
     return _softened(evidence, _of(space, keep, std))
+
+
+def _usual_part(column: Column) -> float:
+    """Return the part of the Coulomb level that a shape near standstill may have in every gear."""
+    if (travel := column.value.get("zs", SHORT)) < SHORT:
+        return SHORTEST / travel
+    return MUCH if column.value.get("vs", 1.0) <= NARROW else EVERY_GEAR[column.term]
 
 
 def _of(space: Space, keep: Sequence[int], std: Sequence[float]) -> Directions:

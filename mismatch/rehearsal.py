@@ -12,7 +12,7 @@ from .evidence import Evidence
 from .experiments import Experiment, Step
 from .grams import Scales, folds_of, whole
 from .room import Room
-from .rows import Rows, make_rows
+from .rows import make_rows
 from .track import Setup
 
 Array = NDArray[np.float64]
@@ -21,8 +21,6 @@ Array = NDArray[np.float64]
 RATE = 125.0
 #: m from the last joint's centre, along its axis, at which a known load's mass sits.
 _AHEAD = 0.1
-#: Share of the filter's window in motion below which a row is not motion alone.
-_MIXED = 0.98
 
 
 @dataclass(frozen=True)
@@ -110,22 +108,11 @@ def information(experiment: Experiment, room: Room, evidence: Evidence, small: L
     scales = _careful(evidence)
     total = np.zeros((small.size + 1,) * 2)
     for hot in temperatures:
-        rows = _settled(make_rows(recording_of(experiment.steps, hot), setup))
+        rows = make_rows(recording_of(experiment.steps, hot), setup)
         if len(rows):
             grams = [whole(f.grams, setup.space) for f in folds_of([rows], [True], scales, setup.space)]
             total[np.ix_(small.places, small.places)] += np.sum(grams, axis=0)[:-1, :-1]
     return np.asarray(total * rounds_of(experiment) / len(temperatures), np.float64)
-
-
-def _settled(rows: Rows) -> Rows:
-    """Count rows that the filter mixes from motion and a rest as that rest: friction is not known in them."""
-    moving = rows.moving.copy()
-    for j in range(moving.shape[1]):
-        edges = np.flatnonzero(np.diff((moving[:, j] < _MIXED).astype(np.int8), prepend=0, append=0))
-        for a, b in zip(edges[::2], edges[1::2], strict=True):
-            if moving[a:b, j].min() < 1 - _MIXED:
-                moving[a:b, j] = 0.0
-    return replace(rows, moving=moving)
 
 
 def _careful(evidence: Evidence) -> Scales:

@@ -37,14 +37,16 @@ FLANK = 0.5
 class Rows:
     """n rows of a recording: time (n,) s; torque (n, N) Nm; columns[j] (n, P_j) in the space's order.
 
-    moving (n, N): share of the kernel in which the joint moves; starts: where gap-free stretches begin.
-    q, qd, load, temperature, since (n, N): smoothed state there. step: s.
+    moving, sliding (n, N): shares of the kernel in which the joint is not at rest, and is faster than REST.
+    starts: where gap-free stretches begin; q, qd, load, temperature, since (n, N): smoothed state there.
+    step: s.
     """
 
     time: Array
     torque: Array
     columns: tuple[Array, ...]
     moving: Array
+    sliding: Array
     q: Array
     qd: Array
     load: Array
@@ -175,7 +177,8 @@ def _filtered(track: Track, part: slice, at: Array, setup: Setup, kernel: Kernel
     beta = physics.regressor.values("beta", q=q, qd=qd)
     own = _own(track, part, setup)
     states = [q, qd, track.load[part], track.temperature[part], np.minimum(track.since[part], 9.0)]
-    plain = [beta, own.reshape(count, -1), track.measured[part], np.abs(qd) > REST, *states]
+    motion = [track.moving[part], np.abs(qd) > REST]
+    plain = [beta, own.reshape(count, -1), track.measured[part], *motion, *states]
     shared_moved, shared_kept = (
         _common(track, part, setup) if setup.space.common else (np.empty((count, n, 0)),) * 2
     )
@@ -195,11 +198,11 @@ def _placed(at: Array, moved: Array, kept: Array, m: int, b: int, setup: Setup) 
     n, k, s = space.dof, len(space.own), len(space.common)
     own = kept[:, b : b + n * k].reshape(-1, n, k)
     after = b + n * k
-    torque, moving, q, qd, load, temperature, since = (
-        kept[:, after + i * n : after + (i + 1) * n] for i in range(7)
+    torque, moving, sliding, q, qd, load, temperature, since = (
+        kept[:, after + i * n : after + (i + 1) * n] for i in range(8)
     )
     rows = len(at)
-    common = moved[:, m:].reshape(rows, n, s) + kept[:, after + 7 * n :].reshape(rows, n, s)
+    common = moved[:, m:].reshape(rows, n, s) + kept[:, after + 8 * n :].reshape(rows, n, s)
     matrices = []
     for j in range(n):
         position = {p: i for i, p in enumerate(space.seen[j])}
@@ -209,15 +212,15 @@ def _placed(at: Array, moved: Array, kept: Array, m: int, b: int, setup: Setup) 
                 if row == j:
                     rigid[:, position[column]] += sign * values[:, i]
         matrices.append(np.hstack([rigid, own[:, j], common[:, j]]))
-    return Rows(at, torque, tuple(matrices), moving, q, qd, load, temperature, since, (), 0.0)
+    return Rows(at, torque, tuple(matrices), moving, sliding, q, qd, load, temperature, since, (), 0.0)
 
 
 def _joined(pieces: list[Rows], starts: tuple[int, ...], step: float, space: Space, origin: float) -> Rows:
     if not pieces:
         none = np.empty((0, space.dof))
         empty = tuple(np.empty((0, len(ix))) for ix in space.indices)
-        return Rows(np.empty(0), none, empty, none, none, none, none, none, none, (), step)
-    names = ("torque", "moving", "q", "qd", "load", "temperature", "since")
+        return Rows(np.empty(0), none, empty, none, none, none, none, none, none, none, (), step)
+    names = ("torque", "moving", "sliding", "q", "qd", "load", "temperature", "since")
     joined: dict[str, Any] = {name: np.vstack([getattr(p, name) for p in pieces]) for name in names}
     columns = tuple(np.vstack([p.columns[j] for p in pieces]) for j in range(space.dof))
     time = np.concatenate([p.time for p in pieces]) + origin

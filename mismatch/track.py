@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
+from scipy.ndimage import binary_dilation, gaussian_filter1d, maximum_filter1d, minimum_filter1d
 
 from ..codegen.columns import columns as term_columns
 from ..identify.kernel import Filter, Kernel, batches, segments
@@ -28,6 +28,9 @@ Array = NDArray[np.float64]
 CUTOFF, DERIVED = 15.0, 10.0
 #: Hz; speeds are smoothed this much, as far as the rate allows: the rows' filter does not notice.
 FASTEST = 30.0
+#: s and rad: within so little travel for so long a joint is at rest, bouncing and creeping included; what
+#: turns round sooner passes through zero speed.
+PAUSE, BRISTLE = 0.15, 1e-3
 #: s; wind-up and delay are sought in torques no faster than this: noise of the acceleration is in the
 #: torque's error, too, and would pass for them (errors in variables).
 CALM = 0.04
@@ -58,6 +61,7 @@ class Track:
 
     load: torque (Nm) that the gear carries; calm: without what is faster than CALM, load_rate: calm's
     rate; motor: load with the rotor's own inertia; steady: motor without what is faster than CALM.
+    moving: passing through zero speed is no rest.
     """
 
     time: Array
@@ -71,6 +75,7 @@ class Track:
     motor: Array
     steady: Array
     since: Array
+    moving: NDArray[np.bool_]
     beyond: Array  # (T, 2 N): momentum and beta that joints beyond the model add
     held: Array  # (T, N, H): columns that remember, made over the whole recording at once
 
@@ -89,7 +94,7 @@ def track_of(recording: Recording, setup: Setup) -> tuple[Track, Kernel, float]:
     track = Track(
         time, q, qd, recording.current[:, :n] * setup.gains, temperature,
         *_load(time, q, qd, setup, kernel, rate),
-        _since(time, qd), beyond, np.empty((len(q), n, 0)),
+        _since(time, qd), moves(q, rate), beyond, np.empty((len(q), n, 0)),
     )  # fmt: skip
     track = replace(track, measured=track.measured - _known(track, setup))
     return replace(track, held=_held(track, setup)), kernel, rate
@@ -141,6 +146,13 @@ def _load(
         calm[stretch] = between(own, at, total)
         slope[stretch] = between(own, at, np.gradient(total, step, axis=0))
     return load, calm, slope, motor, steady
+
+
+def moves(q: Array, rate: float) -> NDArray[np.bool_]:
+    """Return where joints at angles (T, N) move and do not rest (T, N), at a rate in Hz."""
+    width = 2 * round(PAUSE * rate / 2) + 1
+    travel = maximum_filter1d(q, width, axis=0) - minimum_filter1d(q, width, axis=0)
+    return ~np.asarray(binary_dilation(travel < BRISTLE, np.ones((width, 1), np.bool_)), np.bool_)
 
 
 def _since(time: Array, qd: Array) -> Array:

@@ -15,6 +15,7 @@ def rows(count: int, joints: int = 2, fast=None, **given) -> Rows:
     plain = {
         "torque": np.zeros((count, joints)),
         "moving": np.ones((count, joints)),
+        "sliding": np.ones((count, joints)),
         "q": rng.uniform(-2, 2, (count, joints)),
         "qd": rng.choice([-1.0, 1.0], (count, joints)) * rng.uniform(0.2, 1.0, (count, joints)),
         "load": rng.uniform(-20, 20, (count, joints)),

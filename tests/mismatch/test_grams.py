@@ -27,9 +27,9 @@ def test_outliers_do_not_set_the_scale() -> None:
 
 
 def test_rest_and_reversals_count_as_no_surer_than_motion() -> None:
-    moving, since = np.ones((LONG, 2)), np.full((LONG, 2), 2.0)
-    moving[:2000], since[2000:4000] = 0.0, 0.1
-    which = rows(LONG, moving=moving, since=since)
+    moving, sliding = np.ones((LONG, 2)), np.ones((LONG, 2))
+    moving[:2000], sliding[2000:4000] = 0.0, 0.7
+    which = rows(LONG, moving=moving, sliding=sliding)
     noise = ar1(LONG, 0.0, np.random.default_rng(6))
     noise[2000:4000] *= 0.2
     found = scales_of([which], [noise])
@@ -38,10 +38,18 @@ def test_rest_and_reversals_count_as_no_surer_than_motion() -> None:
 
 
 def test_regimes() -> None:
-    moving, since, qd = np.ones((4, 1)), np.full((4, 1), 2.0), np.full((4, 1), 0.5)
-    moving[1], since[2], qd[3] = 0.2, 0.1, 0.01
-    found = regime(rows(4, 1, moving=moving, since=since, qd=qd))
-    assert found[:, 0].tolist() == [0, 2, 1, 1]
+    moving, sliding = np.ones((4, 1)), np.ones((4, 1))
+    moving[1], sliding[1], sliding[2], moving[3] = 0.9, 0.9, 0.9, 0.96
+    found = regime(rows(4, 1, moving=moving, sliding=sliding))
+    assert found[:, 0].tolist() == [0, 2, 1, 0]
+
+
+def test_long_tails_at_zero_speed_are_noise_there() -> None:
+    sliding, noise = np.ones((LONG, 2)), ar1(LONG, 0.0, np.random.default_rng(8))
+    sliding[:2000] = 0.5
+    noise[:2000:20] = 20.0
+    found = scales_of([rows(LONG, sliding=sliding)], [noise]).sigma
+    assert np.all(found[:, 1] == pytest.approx(np.sqrt(0.95 + 0.05 * 400), rel=0.05))
 
 
 def test_a_rest_counts_once_however_long_it_is() -> None:

@@ -1,10 +1,12 @@
 """What is believed: every rule refuses by itself, and one block proves nothing."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from residuum.mismatch.candidates import Candidate
-from residuum.mismatch.judging import EVIDENCE, SHARE, objection
+from residuum.mismatch.judging import EVIDENCE, SHARE, Accepted, implausible, objection, shadow
 from residuum.mismatch.naming import Scored
 
 HERE = Candidate("stribeck", 1, (0,))
@@ -54,3 +56,34 @@ def test_one_block_proves_nothing() -> None:
         alone = scored([100.0], consistency=0.0)
         assert objection(alone, 0.3) != ""
         assert not np.isnan(alone.steadiness)
+
+
+@pytest.mark.parametrize(
+    ("effect", "values", "part", "changed", "believed"),
+    [
+        ("velocity_lag", (("lag", 0.012),), 0.45, False, False),
+        ("velocity_lag", (("lag", 0.012),), 0.55, False, True),
+        ("velocity_lag", (("lag", 0.012),), 0.15, True, True),
+        ("velocity_lag", (("lag", 0.012),), 0.05, True, False),
+        ("presliding_hysteresis", (("zs", 0.003),), 0.3, False, False),
+        ("presliding_hysteresis", (("zs", 0.012),), 0.3, False, True),
+        ("stribeck", (("vs", 0.04),), 0.05, False, True),
+    ],
+)
+def test_what_every_gear_has_is_no_finding_but_a_change_of_it_is(
+    effect, values, part, changed, believed
+) -> None:
+    level = 8.0
+    evidence = SimpleNamespace(
+        setup=SimpleNamespace(friction=np.array([[level, 1.0]])), has_reference=changed
+    )
+    test = Scored(Candidate(effect, 0, (0,), values), np.ones(4), 50.0, np.array([part * level]), np.ones(1))
+    assert (implausible(evidence, test) == "") == believed
+
+
+def test_a_delay_makes_signs_late_and_a_lag_beside_it_is_none() -> None:
+    delay = Accepted(scored([9, 11], candidate=Candidate("time_delay", None, (0, 1))), (), (), 0.5)
+    late = scored([9, 11], candidate=Candidate("velocity_lag", 1, (2,)))
+    assert "delay" in shadow(late, [delay], 6)
+    assert shadow(late, [], 6) == ""
+    assert "%" in shadow(scored([1, 1], evidence=1.0), [Accepted(scored([9, 11]), (), (), 0.5)], 6)

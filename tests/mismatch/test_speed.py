@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from residuum.mismatch.speed import smooth_speeds
-from residuum.mismatch.track import calm_speeds
+from residuum.mismatch.track import BRISTLE, calm_speeds, moves
 from residuum.recordings import Recording
 
 
@@ -41,3 +41,16 @@ def test_nothing_is_carried_across_a_gap() -> None:
     speed = np.where(time < 3, 1.0, -1.0)[:, None]
     found = smooth_speeds(Recording("gap", time, 0 * speed, 0 * speed, qd=speed), 30.0)
     np.testing.assert_allclose(found, speed, atol=1e-9)
+
+
+@pytest.mark.parametrize("rate", [125.0, 500.0])
+def test_a_stop_that_bounces_is_a_rest_and_a_turn_is_none(rate) -> None:
+    """A joint comes to rest at 1 s, springs back by a third of a bristle's travel, starts at 2 s and turns at 3 s."""
+    time = np.arange(0.0, 4.0, 1 / rate)
+    stop, start = np.minimum(time - 1.0, 0.0), np.maximum(time - 2.0, 0.0)
+    bounce = BRISTLE / 3 * np.exp(-(((time - 1.1) / 0.02) ** 2))
+    q = (-0.5 * stop**2 + start - 0.5 * start**2 + bounce)[:, None]
+    found = moves(q, rate)[:, 0]
+    assert not found[(time > 1.0) & (time < 1.95)].any()
+    assert found[(time > 2.1) & (time < 4.0)].all()
+    assert found[time < 0.9].all()
