@@ -64,7 +64,7 @@ WIDTH = 1e-4
 #: rad/s; widths at which Coulomb friction may change its sign instead, real or simulated.
 SOFT = (0.002, 0.01, 0.03)
 #: rad; presliding shorter than this is every gear's, and no finding.
-SHORT = 0.002
+SHORT = 0.0008
 #: Ripple: orders per motor turn.
 ORDERS = (1.0, 2.0, 4.0)
 

@@ -185,11 +185,14 @@ def implausible(evidence: Evidence, test: Scored) -> str:
     c = test.candidate
     if c.effect in _PART_OF_COULOMB and c.joint is not None:
         level = evidence.setup.friction[c.joint, 0]
-        short = dict(c.values).get("zs", _TRAVEL) < _TRAVEL
-        least = _PART_WITHIN if short else _PART_OF_COULOMB[c.effect]
+        least = _PART_WITHIN if _is_short(c) else _PART_OF_COULOMB[c.effect]
         if abs(test.size[0]) < (_PART_CHANGED if evidence.has_reference else least) * level:
             return f"is {100 * abs(test.size[0]) / level:.0f} % of the Coulomb level: too little for it"
     return ""
+
+
+def _is_short(c: Candidate) -> bool:
+    return dict(c.values).get("zs", _TRAVEL) < _TRAVEL
 
 
 def _misshapen(evidence: Evidence, model: Directions, test: Scored) -> str:
@@ -210,7 +213,7 @@ def shadow(test: Scored, accepted: Sequence[Accepted], joints: int) -> str:
     c = test.candidate
     for a in accepted:
         first = a.score.candidate
-        if (first.effect, c.effect) == ("time_delay", "velocity_lag"):
+        if first.effect == "time_delay" and (c.effect == "velocity_lag" or _is_short(c)):
             return "with a delay friction changes its sign late as well"
         # what acts on all has its evidence from all
         part = SHADOW if first.joint is not None else SHADOW / joints

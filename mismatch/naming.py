@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from .candidates import Candidate
-from .columns import BASELINE, SHORT, Column, Space
+from .columns import BASELINE, Column, Space
 from .evidence import Evidence, residual, weighed
 from .frozen import widths
 from .grams import Scales, scales_of
@@ -25,8 +25,10 @@ Array = NDArray[np.float64]
 TIGHT = 0.03
 #: Around standstill every gear differs from Coulomb's law by a few percent of it, in one shape or another,
 EVERY_GEAR = {"stribeck": 0.01, "presliding": 0.01, "lag": 0.03}
-#: and by much of it where it is narrower than this (Stribeck's speed, rad/s), or over less travel (rad).
-NARROW, MUCH, SHORTEST = 0.02, 0.3, 3e-4
+#: and by much of it where it is narrower than this (Stribeck's speed, rad/s).
+NARROW, MUCH = 0.02, 0.3
+#: rad; over so short a travel the whole Coulomb level may build up, over more of it less and less.
+SHORTEST = 3e-4
 #: Of a column's prior width, for columns that only describe the reference's own imperfections.
 SHARES = (0.003, 0.01, 0.03, 0.1)
 BARE = 1e-4
@@ -92,8 +94,8 @@ def nuisance(evidence: Evidence) -> Directions:
 
 def _usual_part(column: Column) -> float:
     """Return the part of the Coulomb level that a shape near standstill may have in every gear."""
-    if (travel := column.value.get("zs", SHORT)) < SHORT:
-        return SHORTEST / travel
+    if column.term == "presliding":
+        return float(max((SHORTEST / column.value["zs"]) ** 3, EVERY_GEAR["presliding"]))
     return MUCH if column.value.get("vs", 1.0) <= NARROW else EVERY_GEAR[column.term]
 
 

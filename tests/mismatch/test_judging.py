@@ -84,6 +84,11 @@ def test_what_every_gear_has_is_no_finding_but_a_change_of_it_is(
 def test_a_delay_makes_signs_late_and_a_lag_beside_it_is_none() -> None:
     delay = Accepted(scored([9, 11], candidate=Candidate("time_delay", None, (0, 1))), (), (), 0.5)
     late = scored([9, 11], candidate=Candidate("velocity_lag", 1, (2,)))
+    short, long = (
+        scored([9, 11], candidate=Candidate("presliding_hysteresis", 1, (2,), (("zs", zs),)))
+        for zs in (0.001, 0.012)
+    )
     assert "delay" in shadow(late, [delay], 6)
-    assert shadow(late, [], 6) == ""
+    assert "delay" in shadow(short, [delay], 6)
+    assert shadow(late, [], 6) == shadow(long, [delay], 6) == ""
     assert "%" in shadow(scored([1, 1], evidence=1.0), [Accepted(scored([9, 11]), (), (), 0.5)], 6)
