@@ -36,6 +36,8 @@ APART = 5.0
 RELATED = 0.2
 #: Less than this share of a found effect's evidence, on its joints, is what that effect's own form leaves.
 SHADOW = 0.1
+#: Unless a jackknife cannot shake its size by 1 %: what a form leaves varies with the motion.
+OWN = 100.0
 #: Findings and failed attempts at most.
 MOST, TRIES = 6, 10
 #: Without a reference: fitted anyway, or only a matter of which masses are believed.
@@ -217,7 +219,8 @@ def shadow(test: Scored, accepted: Sequence[Accepted], joints: int) -> str:
             return "with a delay friction changes its sign late as well"
         # what acts on all has its evidence from all
         part = SHADOW if first.joint is not None else SHADOW / joints
-        if first.joint in (None, c.joint) and test.evidence < part * a.score.evidence:
+        small = test.evidence < part * a.score.evidence and test.consistency < OWN
+        if first.joint in (None, c.joint) and small:
             return f"is {100 * test.evidence / a.score.evidence:.1f} % of what {first.effect} explains there"
     return ""
 

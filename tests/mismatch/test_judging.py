@@ -92,3 +92,5 @@ def test_a_delay_makes_signs_late_and_a_lag_beside_it_is_none() -> None:
     assert "delay" in shadow(short, [delay], 6)
     assert shadow(late, [], 6) == shadow(long, [delay], 6) == ""
     assert "%" in shadow(scored([1, 1], evidence=1.0), [Accepted(scored([9, 11]), (), (), 0.5)], 6)
+    surely = scored([1, 1], evidence=1.0, consistency=340.0)
+    assert shadow(surely, [Accepted(scored([9, 11]), (), (), 0.5)], 6) == ""
