@@ -3,8 +3,9 @@
 python benchmarks/real_noise.py RECORDINGS/unloaded_*.csv [--robot ur10e] [--repeats 2] [--seed 1]
 
 What the recordings lack by themselves is found first and taken off (masses and ripple stay in the model).
-Then one effect at a time is added to the filtered torque of every run, with nonlinear values that stand on no grid. Its size is the rms of what base
-parameters, offset, Coulomb and viscous friction leave of it (--whole: of all of it) over the residual's rms.
+Then one effect at a time is added to the filtered torque of every run, with nonlinear values that stand on
+no grid. Its size is the rms of what base parameters, offset, Coulomb and viscous friction leave of it
+(--whole: of all of it) over the residual's rms.
 Right: the first new name is of the effect's family, on its joint where it has one. Payloads, links and rotors
 are not among them: without a reference the base parameters of this arm are free, and hold them.
 """
@@ -127,7 +128,7 @@ def _torques(evidence: Evidence, vector: Array) -> list[Array]:
 
 
 def _rms(values: Sequence[Array], evidence: Evidence) -> Array:
-    moving = [r.moving.max(axis=1) > 0.5 for r in evidence.runs]
+    moving = [r.arm_moves for r in evidence.runs]
     joined = np.concatenate([v[m] for v, m in zip(values, moving, strict=True)])
     return np.asarray(np.sqrt(np.mean(joined**2, axis=0)), np.float64)
 

@@ -50,7 +50,7 @@ def loaded_error(evidence: Evidence, recording: Recording, theta: Array) -> tupl
         setup = replace(evidence.setup, base=evidence.setup.base + links @ payload)
         rows = make_rows(recording, setup)
         left, columns = residual(rows, space, theta), payload_columns(evidence, rows)
-        moving = rows.moving.max(axis=1) > 0.5
+        moving = rows.arm_moves
         scale = np.sqrt(np.mean(left[moving] ** 2, axis=0))
         a = np.concatenate([columns[moving, j] / scale[j] for j in range(space.dof)])
         b = np.concatenate([left[moving, j] / scale[j] for j in range(space.dof)])

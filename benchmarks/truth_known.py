@@ -63,7 +63,7 @@ def with_truth(evidence: Evidence, effects: list[dict[str, Any]]) -> Directions 
 
 def errors(evidence: Evidence, model: Directions) -> Array:
     """Return the rms (N,) Nm of left-out rows in which the arm moves."""
-    moving = [evidence.runs[r].moving.max(axis=1) > 0.5 for r in observed_runs(evidence)]
+    moving = [evidence.runs[r].arm_moves for r in observed_runs(evidence)]
     left = left_out(evidence, model)
     joined = np.concatenate([e[m] for e, m in zip(left.residual, moving, strict=True)])
     return np.asarray(np.sqrt(np.mean(joined**2, axis=0)), np.float64)

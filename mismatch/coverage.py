@@ -28,7 +28,7 @@ def cannot_show(evidence: Evidence, recordings: Sequence[Recording]) -> Lacks:
     if not runs:
         return Lacks(("nothing: no recording is long enough for the filter (5 s without a gap)",), True)
     q = np.concatenate([r.q for r in runs])
-    moving = sum(float((r.moving.max(axis=1) > 0.5).sum()) * r.step for r in runs)
+    moving = sum(float(r.arm_moves.sum()) * r.step for r in runs)
     texts = []
     standing = [j + 1 for j in range(q.shape[1]) if float(np.ptp(q[:, j])) < _TRAVEL]
     if len(standing) == q.shape[1]:

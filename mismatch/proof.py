@@ -28,7 +28,7 @@ def prove(
     flexible = after + evidence.found.directions.take(curves)
     first = left_out(recorded or evidence, before)
     last, best = (left_out(evidence, m) for m in (after, flexible))
-    moving = [evidence.runs[r].moving.max(axis=1) > 0.5 for r in observed_runs(evidence)]
+    moving = [evidence.runs[r].arm_moves for r in observed_runs(evidence)]
     rms_first, rms_last, rms_best = (_rms(x, moving) for x in (first, last, best))
     ceiling = np.minimum(rms_best, rms_last)
     explained, possible = rms_first**2 - rms_last**2, rms_first**2 - ceiling**2

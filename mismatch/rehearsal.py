@@ -117,10 +117,9 @@ def information(experiment: Experiment, room: Room, evidence: Evidence, small: L
 
 def _careful(evidence: Evidence) -> Scales:
     """Return the noise, at rest no less than a uniform one between -Fc and +Fc has (Fc / sqrt 3)."""
-    scales = evidence.observed_scales or evidence.scales
-    sigma = scales.sigma.copy()
+    sigma = evidence.noise.sigma.copy()
     sigma[:, 2] = np.maximum(sigma[:, 2], np.abs(evidence.setup.friction[:, 0]) / np.sqrt(3))
-    return replace(scales, sigma=sigma)
+    return replace(evidence.noise, sigma=sigma)
 
 
 def _known(setup: Setup) -> Array:

@@ -59,6 +59,11 @@ class Rows:
     def __len__(self) -> int:
         return len(self.time)
 
+    @property
+    def arm_moves(self) -> NDArray[np.bool_]:
+        """Rows (n,) in whose kernel some joint moves most of the time."""
+        return np.asarray(self.moving.max(axis=1) > 0.5, np.bool_)
+
 
 def make_rows(recording: Recording, setup: Setup) -> Rows:
     """Filter a clean recording. There may be no row at all: stretches shorter than the kernel give none."""
