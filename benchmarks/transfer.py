@@ -4,8 +4,8 @@ python benchmarks/transfer.py RECORDINGS/unloaded_*.csv --loaded RECORDINGS/load
 
 On the unloaded runs a joint's friction gets one further term: what explain names, or its impostor. All
 coefficients then stay; on the loaded run only the ten parameters of the payload are fitted. The right name
-extrapolates to the torque that the load adds, the impostor does not. Errors are of the low-passed torque
-where the arm moves.
+extrapolates to the torque that the load adds, the impostor does not. Errors are of each joint's low-passed
+torque where it moves.
 """
 
 import argparse
@@ -18,7 +18,9 @@ from numpy.typing import NDArray
 
 from residuum.mismatch.candidates import Candidate
 from residuum.mismatch.evidence import Evidence, gather, residual
+from residuum.mismatch.grams import regime
 from residuum.mismatch.naming import nuisance, scored
+from residuum.mismatch.proof import rms_where
 from residuum.mismatch.quantities import PAYLOAD, payload_columns
 from residuum.mismatch.refit import parameters
 from residuum.mismatch.rows import make_rows
@@ -50,13 +52,12 @@ def loaded_error(evidence: Evidence, recording: Recording, theta: Array) -> tupl
         setup = replace(evidence.setup, base=evidence.setup.base + links @ payload)
         rows = make_rows(recording, setup)
         left, columns = residual(rows, space, theta), payload_columns(evidence, rows)
-        moving = rows.arm_moves
-        scale = np.sqrt(np.mean(left[moving] ** 2, axis=0))
-        a = np.concatenate([columns[moving, j] / scale[j] for j in range(space.dof)])
-        b = np.concatenate([left[moving, j] / scale[j] for j in range(space.dof)])
+        moving = regime(rows) < 2
+        scale = rms_where([left], moving)
+        a = np.concatenate([columns[moving[:, j], j] / scale[j] for j in range(space.dof)])
+        b = np.concatenate([left[moving[:, j], j] / scale[j] for j in range(space.dof)])
         payload = np.linalg.solve(a.T @ a + np.diag(1 / PAYLOAD**2), a.T @ b)
-    rest = left - columns @ payload
-    return np.sqrt(np.mean(rest[moving] ** 2, axis=0)), payload
+    return rms_where([left - columns @ payload], moving), payload
 
 
 def run(unloaded: Sequence[Path], loaded: Sequence[Path], robot: str, joints: Sequence[int]) -> None:

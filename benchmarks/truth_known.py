@@ -21,7 +21,8 @@ from residuum.mismatch.candidates import Candidate
 from residuum.mismatch.evidence import Evidence, gather
 from residuum.mismatch.judging import judge
 from residuum.mismatch.naming import chosen, nuisance, reweighed, scored
-from residuum.mismatch.refit import left_out, observed_runs
+from residuum.mismatch.proof import joint_moves, rms_where
+from residuum.mismatch.refit import left_out
 from residuum.mismatch.selection import Directions
 from residuum.recordings import read
 from residuum.recordings.audit import clean
@@ -62,11 +63,8 @@ def with_truth(evidence: Evidence, effects: list[dict[str, Any]]) -> Directions 
 
 
 def errors(evidence: Evidence, model: Directions) -> Array:
-    """Return the rms (N,) Nm of left-out rows in which the arm moves."""
-    moving = [evidence.runs[r].arm_moves for r in observed_runs(evidence)]
-    left = left_out(evidence, model)
-    joined = np.concatenate([e[m] for e, m in zip(left.residual, moving, strict=True)])
-    return np.asarray(np.sqrt(np.mean(joined**2, axis=0)), np.float64)
+    """Return the rms (N,) Nm of left-out rows in which the joint moves."""
+    return rms_where(left_out(evidence, model).residual, joint_moves(evidence))
 
 
 def run(trial: Path, least: float) -> None:

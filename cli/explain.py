@@ -75,7 +75,7 @@ def explain(
     count = known.dof if known else dof or len(data.joint)
     if known and dof and dof != known.dof:
         raise InputError(f"--dof {dof}: {model} has {known.dof} joints; leave --dof out")
-    with stages(14) as bar:
+    with stages(15) as bar:
         answer = explained(Task(recordings, references, data, digest, count, known), bar.begin)
         bar.begin("writing")
         files = {

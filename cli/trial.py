@@ -76,6 +76,7 @@ def explain_case(files: "CaseFiles") -> dict[str, Any]:
         robot_hash=digest,
         dof=len(robot.joint),
         propose=False,
+        thresholds=False,
     )
     return dict(explain(task).findings)
 

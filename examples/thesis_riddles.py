@@ -2,7 +2,7 @@
 
 There joint 1's residual grew with the arm's reach, and joints 2 and 3 needed a "gravity" column in q. Here
 joints 1-3 of the virtual UR5e move while the wrist stands, the thesis' scheme is fitted, and explain is asked
-what a model of links 1-3 lacks. docs/thesis_riddles.md says what that does and does not show.
+what the thesis' own model lacks. docs/thesis_riddles.md says what that does and does not show.
 
     python examples/thesis_riddles.py --out riddles
 """
@@ -190,9 +190,9 @@ def main() -> None:
         "all links": nominal_model(robot, digest, 3, WRIST),
     }
     lengths = {name: value.value for name, value in models["thesis"].base.items()}
-    bare, whole = out / "links_1-3.toml", out / "all_links.toml"
-    bare.write_text(model_toml(models["links 1-3"]), encoding="utf-8")
-    whole.write_text(model_toml(models["all links"]), encoding="utf-8")
+    told = {"thesis": out / "thesis_model.toml", "all links": out / "all_links.toml"}
+    for name, path in told.items():
+        path.write_text(model_toml(models[name]), encoding="utf-8")
     loaded = tuple(effects.LoadDependentFriction(joint=j, coefficient=LOAD_FRICTION) for j in (2, 3))
     for name, plant in (("plain", Plant()), ("load_friction", Plant(load_dependent_friction=loaded))):
         paths = simulated(robot, out, name, plant)
@@ -202,14 +202,15 @@ def main() -> None:
         for some in (paths, paths[-1:]):
             fitted = residuum("fit", *map(str, some), "--scheme", "thesis", "--out", str(out / "thesis.toml"))
             print(*(x for x in fitted.splitlines() if x.startswith(("position", "joint 1"))), sep="\n")
-        found, refined = explained(paths, bare, out / f"{name}_explained")
+        found, refined = explained(paths, told["thesis"], out / f"{name}_explained")
         seen = {k: samples(paths, m) for k, m in (models | {"explained": refined}).items()}
         report(seen, lengths)
-        print("explain, told links 1-3 alone:", *found, sep="\n  ")
+        print("explain, told the thesis' model:", *found, sep="\n  ")
         mass = (refined.base["MX2"].value - models["links 1-3"].base["MX2"].value) / robot.joint[1].a
         real = sum(j.mass for j in robot.joint[3:])
         print(f"  its rigid body has {mass:.3f} kg more beyond the elbow; links 4-6 weigh {real:.3f} kg")
-        print("explain, told all links:", *explained(paths, whole, out / f"{name}_all_links")[0], sep="\n  ")
+        whole, _ = explained(paths, told["all links"], out / f"{name}_all_links")
+        print("explain, told all links:", *whole, sep="\n  ")
         draw(out / f"{name}.png", seen, lengths)
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import pairwise
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..codegen.generate import observer_text
 from ..codegen.load import load_text
-from ..recordings import speeds
+from ..recordings import Recording, speeds
 from ..robots.model import Model, Thresholds
 from .estimate import HeldOut
 from .observation import observe
@@ -44,10 +45,13 @@ def free_motion_thresholds(
 
 def residual(piece: Piece, observer_text: str) -> Residual:
     """Return the largest external torque of each 0.1 s of a piece, once the observer has settled."""
-    module = load_text(observer_text)
-    seen = observe(piece.recording, module)
-    n = module.DOF
-    size, speed = np.abs(seen.external_torque), np.abs(speeds(piece.recording)[:, :n])
+    return largest(piece.recording, load_text(observer_text))
+
+
+def largest(recording: Recording, module: ModuleType) -> Residual:
+    """Return the largest external torque that an observer sees in each 0.1 s, once it has settled."""
+    seen, n = observe(recording, module), module.DOF
+    size, speed = np.abs(seen.external_torque), np.abs(speeds(recording)[:, :n])
     time = seen.timestamp[seen.settled]
     size, speed = size[seen.settled], speed[seen.settled]
     if not len(time):

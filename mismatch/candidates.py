@@ -2,16 +2,18 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
 from ..symbolic.terms import CATALOGUE
-from .columns import GRIDS, ORDERS, SHORT, SOFT, TERMS, WIDTH, Column, Space
+from .columns import GAPS, GRIDS, ORDERS, SHORT, SLACK, SOFT, TERMS, WIDTH, Column, Space
 from .flexible import names as curve_names
+from .lacking import DROPPED, FROZEN
 from .physics import Physics
-from .rows import DELAYS, FLANK
+from .rows import DELAYS
 from .selection import Directions
 
 Array = NDArray[np.float64]
@@ -48,6 +50,7 @@ def own_columns(gear: float) -> tuple[Column, ...]:
         width = (("width", WIDTH),) if "width" in entry.parameters else ()
         found += [Column(term, p, values + width) for values in tried for p in entry.linear_in]
     found += [Column("coulomb", "Fc", (("width", w),)) for w in SOFT]
+    found += [Column(SLACK, "gap", (("gap", x),)) for x in GAPS]
     found += [Column("ripple", p, (("n", k * gear),)) for k in ORDERS for p in ("A", "B")]
     return tuple(found)
 
@@ -102,20 +105,19 @@ def candidates(
             if c.term != "curve" and not c.soft:
                 at = add(unit[space.own_index(j, k)], own_std[j, k])
                 groups.setdefault((c.term, c.values), []).append(at)
+        gaps = [groups.pop((SLACK, (("gap", x),)), []) for x in GAPS]
+        if load[j, 0] < 0 < load[j, 1]:
+            for k, (a, b) in enumerate(pairwise(gaps)):
+                ends = ("gap", GAPS[k]), ("wider", GAPS[k + 1])
+                each.append(Candidate("backlash", j, (*a, *b), ends))
         for (term, values), columns in groups.items():
             if dict(values).get("zs", SHORT) < SHORT:
                 continue
             constant = groups["offset", ()] if term == "spring" else []
             each.append(Candidate(_PLAIN[term], j, (*columns, *constant), values, (term,), term in _POSITIVE))
-    for kind, effect in (
-        ("encoder", "encoder_offset"),
-        ("elasticity", "joint_elasticity"),
-        ("backlash", "backlash"),
-    ):
+    for kind, effect in (("encoder", "encoder_offset"), ("elasticity", "joint_elasticity")):
         for j in range(space.dof):
             at = add(unit[space.common_index(f"{kind}{j + 1}")], common_std[kind])
-            if kind == "backlash" and not load[j, 0] < -2 * FLANK < 2 * FLANK < load[j, 1]:
-                continue
             each.append(Candidate(effect, j, (at,), positive=kind != "encoder"))
     tilt = [add(unit[space.common_index(x)], common_std["tilt"]) for x in ("roll", "pitch")]
     each.append(Candidate("base_tilt", None, tuple(tilt)))
@@ -124,9 +126,10 @@ def candidates(
             add(unit[space.common_index(f"{x}{k + 1}")], common_std["delay"]) for x in ("delay", "reversal")
         ]
         each.append(Candidate("time_delay", None, tuple(both), (("around", delay),)))
-    if "frozen" in space.common:
-        at = add(unit[space.common_index("frozen")], common_std["frozen"])
-        each.append(Candidate("frozen_joint_coupling", None, (at,), positive=True))
+    for name, effect in ((FROZEN, "frozen_joint_coupling"), (DROPPED, "dropped_coupling")):
+        if name in space.common:
+            at = add(unit[space.common_index(name)], common_std["lacking"])
+            each.append(Candidate(effect, None, (at,), positive=True))
     _inertial(space, physics, base_std, add, each)
     curve = []
     for j in range(space.dof):

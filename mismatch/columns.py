@@ -48,8 +48,11 @@ GRIDS: Mapping[tuple[str, str], tuple[float, ...]] = {
     ("tanh", "vt"): (0.3, 1.0),
     ("presliding", "zs"): (0.0003, 0.001, 0.003, 0.006, 0.012, 0.03),
     ("lag", "lag"): (0.003, 0.006, 0.012, 0.02, 0.04),
-    ("position_dependent", "n"): (1.0, 2.0),
+    ("position_dependent", "n"): (1.0, 2.0, 3.0),
 }
+#: The column of slack, which is no term of a joint alone; half its width (rad), neighbours mix.
+SLACK = "slack"
+GAPS = (0.00025, 0.0005, 0.001, 0.002, 0.004, 0.008, 0.016)
 
 #: Terms with one entry for each value of their grid; order is that of the columns.
 TERMS = (

@@ -36,8 +36,8 @@ def cannot_show(evidence: Evidence, recordings: Sequence[Recording]) -> Lacks:
     elif standing:
         numbers = ", ".join(map(str, standing))
         texts.append(f"friction and inertia of joint {numbers}: it stands still here")
-    if (frozen := evidence.setup.frozen) is not None:
-        numbers, fewer, all_of = ", ".join(map(str, frozen.joints)), q.shape[1], frozen.whole[0].dof
+    for x in (x for x in evidence.setup.lacking if x.joints):
+        numbers, fewer, all_of = ", ".join(map(str, x.joints)), q.shape[1], x.whole.dof
         texts.append(
             f"joint {numbers}: a model of {fewer} joints holds it still, but it moves; give --dof {all_of}"
         )

@@ -13,10 +13,10 @@ from ..recordings import Recording
 from ..robots import Robot
 from ..robots.model import Model
 from .candidates import Candidates, candidates, curve_columns, own_columns
-from .columns import BASELINE, WIDTH, Column, Space, space_of
+from .columns import BASELINE, SLACK, WIDTH, Column, Space, space_of
 from .flexible import ranges
-from .frozen import SHARE, frozen_of, widths
 from .grams import Fold, Scales, equal_scales, folds_of, scales_of, whole
+from .lacking import SHARE, dropped_of, frozen_of, widths
 from .physics import physics_of
 from .rows import Rows, common_names, make_rows
 from .selection import Sums
@@ -55,8 +55,11 @@ class Evidence:
 
     @cached_property
     def mean(self) -> Array:
-        """Prior mean (P,) of all parameters: published base parameters, and nothing else."""
-        return _lifted(self.setup.physics.published, self.setup.space)
+        """Prior mean (P,) of all parameters: those of the nominal model, without friction."""
+        found = _lifted(self.setup.physics.published, self.setup.space)
+        for x in self.setup.lacking:
+            found[self.setup.space.common_index(x.name)] = x.nominal
+        return found
 
     @cached_property
     def sums(self) -> Sums:
@@ -66,9 +69,12 @@ class Evidence:
 
 def gather(
     recordings: Sequence[Recording], observed: Sequence[bool], model: Model, robot: Robot,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Callable[[str], None] = lambda _: None, simplified: Model | None = None,
 ) -> Evidence:  # fmt: skip
-    """Make rows, first with a plain model for loads and slopes, then with every hypothesis."""
+    """Make rows, first with a plain model for loads and slopes, then with every hypothesis.
+
+    simplified: the nominal model, where it drops couplings of `model`, the full one.
+    """
     physics = physics_of(model, robot)
     gains = np.array([j.drive_gain for j in model.joint])
     gear = float(robot.joint[0].gear)
@@ -85,18 +91,20 @@ def gather(
     base, friction = _plain_fit(healthy, plain.space, physics.published, base_std)
     q, qd, load, heat = _states(first)
     frozen = frozen_of(model, robot, recordings)
+    lacking = ((frozen,) if frozen else ()) + ((dropped_of(simplified, model),) if simplified else ())
     own = (*own_columns(gear), *curve_columns())
     limits = ranges(q, qd, load, heat)
     setup = Setup(
-        physics, space_of(physics.regressor, own, common_names(physics.dof, frozen is not None)),
-        gains, base, friction, limits, known, frozen,
+        physics, space_of(physics.regressor, own, common_names(physics.dof, lacking)),
+        gains, base, friction, limits, known, lacking,
     )  # fmt: skip
     progress("columns of every hypothesis")
     runs = [make_rows(r, setup) for r in recordings]
     torque = np.sqrt(np.mean(np.concatenate([r.torque for r in runs]) ** 2, axis=0))
     own_std = 0.2 * _own_std(runs, setup.space, torque)
+    own_std[:, [c.term == SLACK for c in setup.space.own]] = 1.0  # the column is of the whole gap
     common_std = {
-        "encoder": 0.05, "elasticity": 1e-3, "backlash": 0.01, "tilt": 0.2, "delay": 0.05, "frozen": SHARE,
+        "encoder": 0.05, "elasticity": 1e-3, "tilt": 0.2, "delay": 0.05, "lacking": SHARE,
     }  # fmt: skip
     found = candidates(setup.space, physics, own_std, common_std, base_std, limits.load)
     progress("noise")

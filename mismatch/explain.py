@@ -20,14 +20,17 @@ from .coverage import cannot_show
 from .episodes import contact, episodes
 from .evidence import Evidence, gather, residual
 from .judging import Judged, judge
+from .lacking import full_of
+from .limits import with_thresholds
 from .naming import reweighed
 from .next_motion import next_motion
 from .placebo import placebo_rate
-from .proof import prove
-from .refine import plain, refined
+from .proof import joint_moves, prove, rms_where
+from .refine import plain, refined, unnamed
 from .refit import observed_runs, parameters
 from .regions import regions
 from .result import Explanation, NextMotion, Source
+from .selection import Directions
 from .sharpen import sharpened, without
 from .unknown import unknowns
 
@@ -39,7 +42,8 @@ Progress = Callable[[str], None]
 class Task:
     """What to explain. model: the nominal one instead of the robot's published links.
 
-    propose: look for the motion that would tell apart what these recordings cannot.
+    propose: look for the motion that would tell apart what these recordings cannot. thresholds: run the
+    refined model's observer along the recordings for its detection thresholds.
     """
 
     recordings: tuple[Path, ...]
@@ -49,6 +53,7 @@ class Task:
     dof: int
     model: Model | None = None
     propose: bool = True
+    thresholds: bool = True
 
 
 def explain(task: Task, progress: Progress = lambda _: None) -> Explanation:
@@ -56,15 +61,11 @@ def explain(task: Task, progress: Progress = lambda _: None) -> Explanation:
 
     Raises InputError for files that cannot be read or that hold fewer joints than asked.
     """
-    if task.model is not None and task.model.variant != "full":
-        raise InputError(
-            f"--model: variant {task.model.variant} has no base parameters; give a model of variant full"
-        )
     progress("reading and auditing")
     taken = [_read(p, r) for r, some in ((False, task.recordings), (True, task.reference)) for p in some]
     _distinct(taken)
     sources = tuple(_source(rec, report, ref) for rec, report, ref in taken)
-    nominal = task.model or nominal_model(task.robot, task.robot_hash, task.dof, _locked(taken, task))
+    nominal, simplified = _nominal(task, taken)
     nominal = nominal.model_copy(update={"inputs": (*nominal.inputs, *_inputs(taken))})
     refusals = [(rec, report) for rec, report, _ in taken if report.verdict == "refuse"]
     if refusals:
@@ -76,7 +77,7 @@ def explain(task: Task, progress: Progress = lambda _: None) -> Explanation:
             )
     recordings = [rec for rec, _, _ in taken]
     observed = [not ref for _, _, ref in taken]
-    evidence = gather(recordings, observed, nominal, task.robot, progress)
+    evidence = gather(recordings, observed, nominal, task.robot, progress, simplified)
     lacks = cannot_show(evidence, recordings)
     if lacks.hopeless:
         return bad_data(task.robot, nominal, sources, [], lacks.texts)
@@ -94,10 +95,9 @@ def _explained(
     judged = judge(evidence, progress)
     progress("what is left")
     weighed = reweighed(evidence, judged.model)
-    own = parameters(weighed, judged.model)
     which = observed_runs(evidence)
     names = [recordings[r].name for r in which]
-    left = [residual(evidence.runs[r], evidence.setup.space, own) for r in which]
+    left = _left(weighed, judged.model)
     found = episodes(evidence.runs, which, left, evidence.scales, evidence.setup.friction[:, 0])
     force = contact(
         found,
@@ -111,7 +111,7 @@ def _explained(
     sharp = sharpened(weighed, judged)
     progress("proof on left-out blocks")
     kept = [a for a in judged.accepted if a.is_finding or not evidence.has_reference]
-    baseline = plain(weighed, [a for a in kept if not a.is_finding])[0]
+    baseline = unnamed(weighed, kept)
     seen = None if load is None else reweighed(recorded, baseline)
     proof, before, after = prove(weighed, baseline, plain(weighed, kept)[0], seen)
     gear = float(task.robot.joint[0].gear)
@@ -121,11 +121,23 @@ def _explained(
     rate = placebo_rate(weighed, judged)
     progress("refined model")
     model = refined(weighed, nominal, task.robot, judged.accepted, {k: s.value for k, s in sharp.items()})
+    if task.thresholds:
+        progress("thresholds")
+        fitted = rms_where(_left(weighed, plain(weighed, kept)[0]), joint_moves(weighed))
+        inflate = np.maximum(1.0, proof.after / np.maximum(fitted, 1e-12))
+        touched = [e.span for e in found] + list(load.intervals if load else ())
+        model = with_thresholds(model, [recordings[r] for r in which], inflate, touched)
     parts = Parts(
         task.robot, nominal, sources, evidence, judged, sharp, found, left, force, strange, proof, before,
         after, rate, tuple(places), names, lacks, model, _proposal(task, weighed, judged, progress), load,
     )  # fmt: skip
     return compose(parts)
+
+
+def _left(evidence: Evidence, model: Directions) -> list[Array]:
+    """Return what a model that is fitted to all rows leaves of each observed run (n, N), Nm."""
+    own = parameters(evidence, model)
+    return [residual(evidence.runs[r], evidence.setup.space, own) for r in observed_runs(evidence)]
 
 
 def _proposal(task: Task, evidence: Evidence, judged: Judged, progress: Progress) -> NextMotion | None:
@@ -164,6 +176,15 @@ def _inputs(taken: Sequence[tuple[Recording, AuditReport, bool]]) -> tuple[Input
     return tuple(
         Input(name=rec.name, sha256=rec.source.sha256) for rec, _, _ in taken if rec.source is not None
     )
+
+
+def _nominal(task: Task, taken: Sequence[tuple[Recording, AuditReport, bool]]) -> tuple[Model, Model | None]:
+    """Return the nominal model in its full form, and the task's own where that one is a simplified one."""
+    if task.model is None:
+        return nominal_model(task.robot, task.robot_hash, task.dof, _locked(taken, task)), None
+    if task.model.variant == "full":
+        return task.model, None
+    return full_of(task.model, task.robot, task.robot_hash), task.model
 
 
 def _locked(taken: Sequence[tuple[Recording, AuditReport, bool]], task: Task) -> tuple[float, ...]:

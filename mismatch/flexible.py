@@ -22,6 +22,7 @@ PIECES = {
     "load sign": 5,
     "since reversal": 5,
     "temperature": 3,
+    "drive sign": 1,
 }
 #: s; edges of the hats over the time since the last reversal.
 _SINCE = np.array([0.0, 0.05, 0.1, 0.2, 0.4, 0.8])
@@ -55,9 +56,13 @@ def names() -> list[tuple[str, int]]:
 
 
 def curves(
-    q: Array, qd: Array, load: Array, temperature: Array, since: Array, sign: Array, limits: Ranges
-) -> Iterator[Array]:
-    """Give the curve's columns (T, N) in the order of `names`; sign: smooth direction of each joint."""
+    q: Array, qd: Array, load: Array, temperature: Array, since: Array, sign: Array, drive: Array,
+    limits: Ranges,
+) -> Iterator[Array]:  # fmt: skip
+    """Give the curve's columns (T, N) in the order of `names`.
+
+    sign, drive: smooth direction of each joint's motion, and of the torque that its drive gives.
+    """
     speed = np.abs(qd)
     kinds = {
         "q": (q, limits.q, False),
@@ -72,6 +77,9 @@ def curves(
         if name == "since reversal":
             for k in range(count):
                 yield sign * ((since >= _SINCE[k]) & (since < _SINCE[k + 1]))
+            continue
+        if name == "drive sign":
+            yield drive
             continue
         x, span, turned = kinds[name]
         unit = (x - span[:, 0]) / (span[:, 1] - span[:, 0]) * (count - 1)

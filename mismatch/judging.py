@@ -10,7 +10,7 @@ from .candidates import Candidate
 from .evidence import Evidence
 from .flexible import names
 from .grams import regime
-from .naming import Scored, chosen, nuisance, ranked, reweighed, scored, steadiness, tested
+from .naming import Scored, chosen, nuisance, ranked, scored, steadiness, tested
 from .selection import Directions
 
 Array = NDArray[np.float64]
@@ -24,20 +24,32 @@ STEADY, IMPROVED = 2.0, 0.6
 #: makes (jackknife), with nearly all folds improved, or surer and with twice the evidence.
 ALWAYS, CONSISTENT, SURE = 0.75, 4.0, 5.0
 #: Or the baseline bends to imitate it, so that left-out blocks gain little, but no block shakes its size, and
-#: twice the evidence counts how far the baseline had to bend: then this share of the left-out nats will do.
+#: twice the evidence counts how far the baseline had to bend: then this share of the left-out nats will do,
+#: and half the steadiness.
 UNSHAKEN, BENT = 8.0, 0.3
 #: A size that is not this many of its jackknife's standard errors away from zero is no size at all.
 SIZED = 3.0
+#: Or it is a blow, which is rare: so many times the evidence.
+BLOWS = 3.0
 #: A named effect explains at least this share of what its joint's model leaves: less is of no use to anyone.
 SHARE = 0.01
-#: A rival is told apart by this many nats, or by a steady lead.
-APART = 5.0
+#: Friction over the angle is a wave unless any curve explains so much more than it.
+NO_WAVE = 0.5
+#: A rival is told apart by this many nats, and by a steady lead where that is a small share of the evidence.
+APART, CLOSE = 5.0, 0.05
 #: A rival explains at least this share of what the best does.
 RELATED = 0.2
 #: Less than this share of a found effect's evidence, on its joints, is what that effect's own form leaves.
 SHADOW = 0.1
 #: Unless a jackknife cannot shake its size by 1 %: what a form leaves varies with the motion.
 OWN = 100.0
+#: The rigid body's form is exact: what it leaves is time and gains that are off by a few percent, squared.
+RIGID = (
+    "payload", "link_inertial", "rotor_inertia", "base_free", "frozen_joint_coupling", "dropped_coupling",
+)  # fmt: skip
+RIGID_SHADOW = 0.001
+#: One body that explains this share of what all base parameters together do has that name.
+ONE_BODY = 0.9
 #: Findings and failed attempts at most.
 MOST, TRIES = 6, 10
 #: Without a reference: fitted anyway, or only a matter of which masses are believed.
@@ -50,6 +62,8 @@ SYNCHRONOUS = 0.003
 _PART_OF_COULOMB = {"presliding_hysteresis": 0.2, "velocity_lag": 0.5}
 _TRAVEL, _PART_WITHIN = 0.005, 0.35
 _PART_CHANGED = 0.1
+#: What slack does follows from its width: the size of its column is one, or at least this.
+_LEAST_GAP = 0.3
 
 
 @dataclass(frozen=True)
@@ -111,13 +125,13 @@ def judge(
             hollow.add(best.candidate.key)
             refused.append((best, why))
             continue
-        test = tested(evidence, model, best.candidate)
+        test, weighed = tested(evidence, model, best.candidate)
         part = share_of(evidence, test)
         why = (
             objection(test, part)
             or implausible(evidence, test)
             or shadow(test, accepted, evidence.setup.space.dof)
-            or _misshapen(evidence, model, test)
+            or _misshapen(weighed, model, test)
         )
         tries += 1
         if why:
@@ -130,15 +144,25 @@ def judge(
 
 
 def _likelier(order: Sequence[Scored]) -> Scored:
-    """Return the best hypothesis, but a load where a changed link explains no more: links rarely change."""
+    """Return the best hypothesis, but a name where freed base parameters, which are none, explain no more.
+
+    And a load where a changed link explains no more: links rarely change.
+    """
     best = order[0]
+    if best.candidate.effect == "base_free":
+        bodies = [s for s in order if s.candidate.effect in ("payload", "link_inertial")]
+        best = next((s for s in bodies if s.evidence > ONE_BODY * best.evidence), best)
     if best.candidate.effect == "link_inertial":
-        for other in order[1:]:
-            if other.candidate.effect == "payload" and best.evidence - other.evidence < max(
-                APART, 0.05 * best.evidence
-            ):
-                return other
+        loads = [s for s in order if s.candidate.effect == "payload" and not told_apart(best, s)]
+        return loads[0] if loads else best
     return best
+
+
+def told_apart(best: Scored, other: Scored) -> bool:
+    """Return whether one hypothesis is better than another by more than what recordings like these decide."""
+    lead = best.evidence - other.evidence
+    unsteady = steadiness(best.gain - other.gain) < STEADY
+    return not (lead < APART or (lead < CLOSE * best.evidence and unsteady))
 
 
 def share_of(evidence: Evidence, test: Scored) -> float:
@@ -166,7 +190,9 @@ def effective(evidence: Evidence, joint: int | None) -> float:
 
 def objection(test: Scored, part: float) -> str:
     """Return in words why a hypothesis is not believed, or nothing."""
-    unshaken = test.consistency >= UNSHAKEN and test.evidence >= 2 * EVIDENCE
+    if test.candidate.effect == "backlash":
+        return _objection_to_blows(test, part)
+    unshaken = test.consistency >= UNSHAKEN and test.evidence >= 2 * EVIDENCE and test.steadiness >= 1
     if test.evidence < EVIDENCE or test.total < (BENT if unshaken else 1.0) * EVIDENCE:
         return f"evidence {min(test.evidence, test.total):.1f} nats, {EVIDENCE:g} asked"
     if test.consistency < SIZED:
@@ -182,9 +208,24 @@ def objection(test: Scored, part: float) -> str:
     return ""
 
 
+def _objection_to_blows(test: Scored, part: float) -> str:
+    """Return in words why slack is not believed, or nothing.
+
+    A blow lasts 20 ms: blocks in which it comes gain or, where it is mistimed, lose more than all the others,
+    so neither gain nor size is steady. Instead its size has to be that of the gap (`implausible`).
+    """
+    if test.evidence < BLOWS * EVIDENCE or test.total < EVIDENCE:
+        return f"evidence {min(test.evidence, test.total):.1f} nats, {BLOWS * EVIDENCE:g} asked"
+    if test.improved < IMPROVED:
+        return f"improves only {100 * test.improved:.0f} % of the left-out parts"
+    return f"explains only {100 * part:.1f} % of what is left" if part < SHARE else ""
+
+
 def implausible(evidence: Evidence, test: Scored) -> str:
     """Return in words why a hypothesis is no physics at the size that it would have, or nothing."""
     c = test.candidate
+    if c.effect == "backlash" and not _LEAST_GAP < (times := float(test.size.sum())) < 1 / _LEAST_GAP:
+        return f"moves the arm {times:.2g} times as much as such a gap does"
     if c.effect in _PART_OF_COULOMB and c.joint is not None:
         level = evidence.setup.friction[c.joint, 0]
         least = _PART_WITHIN if _is_short(c) else _PART_OF_COULOMB[c.effect]
@@ -197,16 +238,23 @@ def _is_short(c: Candidate) -> bool:
     return dict(c.values).get("zs", _TRAVEL) < _TRAVEL
 
 
-def _misshapen(evidence: Evidence, model: Directions, test: Scored) -> str:
-    """Return in words that friction over the angle is no wave, as a damaged tooth's, or nothing."""
+def _misshapen(weighed: Evidence, model: Directions, test: Scored) -> str:
+    """Return in words that a curve which is no physics explains it far better, or nothing.
+
+    Friction over the angle that is no wave is a damaged tooth's. What turns with the sign of the drive's
+    torque, and not with that of motion, is the amplifier's. weighed: by what the hypothesis leaves.
+    """
     c = test.candidate
-    if c.effect != "position_dependent_friction" or c.joint is None:
+    if c.joint is None:
         return ""
-    curve = [evidence.found.curve[c.joint][k] for k, (over, _) in enumerate(names()) if over == "q sign"]
-    weighed = reweighed(evidence, chosen(model, evidence, c))
-    wave, any_shape = scored(weighed, model, [c, Candidate("unknown", c.joint, tuple(curve))])
-    if (lead := any_shape.evidence - wave.evidence) > max(EVIDENCE, wave.evidence):
-        return f"a curve over the angle that is no wave explains {lead:.0f} nats more"
+    over, least = "drive sign", EVIDENCE
+    if c.effect == "position_dependent_friction":
+        over, least = "q sign", max(EVIDENCE, NO_WAVE * test.evidence)
+    curve = [weighed.found.curve[c.joint][k] for k, (name, _) in enumerate(names()) if name == over]
+    other = scored(weighed, model, [Candidate("unknown", c.joint, tuple(curve))])[0]
+    if (lead := other.evidence - test.evidence) > least:
+        what = {"q sign": "a curve over the angle that is no wave", "drive sign": "the torque's own sign"}
+        return f"{what[over]} explains {lead:.0f} nats more"
     return ""
 
 
@@ -217,12 +265,19 @@ def shadow(test: Scored, accepted: Sequence[Accepted], joints: int) -> str:
         first = a.score.candidate
         if first.effect == "time_delay" and (c.effect == "velocity_lag" or _is_short(c)):
             return "with a delay friction changes its sign late as well"
-        # what acts on all has its evidence from all
-        part = SHADOW if first.joint is not None else SHADOW / joints
-        small = test.evidence < part * a.score.evidence and test.consistency < OWN
+        small = test.evidence < shade(a, joints) and test.consistency < OWN
         if first.joint in (None, c.joint) and small:
             return f"is {100 * test.evidence / a.score.evidence:.1f} % of what {first.effect} explains there"
     return ""
+
+
+def shade(found: Accepted, joints: int) -> float:
+    """Return the nats on one joint that a found effect's own form may leave. joints: N."""
+    c = found.score.candidate
+    if c.effect in RIGID:
+        return RIGID_SHADOW * found.score.evidence
+    # what acts on all has its evidence from all
+    return SHADOW / (1 if c.joint is not None else joints) * found.score.evidence
 
 
 def _rivals(
@@ -247,10 +302,9 @@ def _rivals(
     for other, left in zip(near, after, strict=True):
         if left.evidence > 0.5 * other.evidence:
             continue  # it explains something else
-        lead = best.evidence - other.evidence
-        steady = steadiness(best.gain - other.gain)
-        if lead < APART or (lead < 0.05 * best.evidence and steady < STEADY):
-            alike.append(other.candidate)
+        if told_apart(best, other):
+            lead = best.evidence - other.evidence
+            beaten.append((other.candidate, lead, steadiness(best.gain - other.gain)))
         else:
-            beaten.append((other.candidate, lead, steady))
+            alike.append(other.candidate)
     return tuple(alike), tuple(beaten)

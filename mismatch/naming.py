@@ -14,8 +14,8 @@ from scipy import sparse
 from .candidates import Candidate
 from .columns import BASELINE, Column, Space
 from .evidence import Evidence, residual, weighed
-from .frozen import widths
 from .grams import Scales, scales_of
+from .lacking import widths
 from .refit import observed_runs, parameters
 from .selection import Directions, Eliminated, eliminate, log_evidence
 
@@ -201,9 +201,10 @@ def ranked(evidence: Evidence, model: Directions, skip: Sequence[str] = ()) -> l
     return sorted(best.values(), key=lambda s: -s.evidence)
 
 
-def tested(evidence: Evidence, model: Directions, candidate: Candidate) -> Scored:
-    """Score one hypothesis with the rows weighed by what is left once it is in."""
-    return scored(reweighed(evidence, chosen(model, evidence, candidate)), model, [candidate])[0]
+def tested(evidence: Evidence, model: Directions, candidate: Candidate) -> tuple[Scored, Evidence]:
+    """Score one hypothesis with the rows weighed by what is left once it is in; also return these rows."""
+    weighed = reweighed(evidence, chosen(model, evidence, candidate))
+    return scored(weighed, model, [candidate])[0], weighed
 
 
 def chosen(model: Directions, evidence: Evidence, candidate: Candidate) -> Directions:

@@ -1,15 +1,18 @@
 """Proof on data that the fit did not see: error before and after, the flexible ceiling, thresholds."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from .evidence import Evidence
-from .grams import blocks
+from .grams import blocks, regime
 from .refit import LeftOut, left_out, observed_runs
 from .result import Proof
 from .selection import Directions
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 #: Draws of the block bootstrap, and its seed.
 _DRAWS, _SEED = 1000, 7
@@ -28,8 +31,8 @@ def prove(
     flexible = after + evidence.found.directions.take(curves)
     first = left_out(recorded or evidence, before)
     last, best = (left_out(evidence, m) for m in (after, flexible))
-    moving = [evidence.runs[r].arm_moves for r in observed_runs(evidence)]
-    rms_first, rms_last, rms_best = (_rms(x, moving) for x in (first, last, best))
+    moving = joint_moves(evidence)
+    rms_first, rms_last, rms_best = (rms_where(x.residual, moving) for x in (first, last, best))
     ceiling = np.minimum(rms_best, rms_last)
     explained, possible = rms_first**2 - rms_last**2, rms_first**2 - ceiling**2
     worth = possible > 0.01 * rms_first**2
@@ -44,26 +47,35 @@ def prove(
 def _scheme(evidence: Evidence) -> str:
     count = len(blocks(evidence.runs, evidence.observed, True))
     side = "of the observed recordings, reference kept" if evidence.has_reference else "of the recordings"
-    what = "rms of the low-passed torque error where the arm moves"
+    what = "rms of each joint's low-passed torque error where it moves"
     return f"{count} blocks {side} left out one at a time; {what}"
 
 
-def _rms(left: LeftOut, moving: list[NDArray[np.bool_]]) -> Array:
-    everything = np.concatenate([e[m] for e, m in zip(left.residual, moving, strict=True)])
-    return np.sqrt(np.mean(everything**2, axis=0)) if len(everything) else np.zeros(left.residual[0].shape[1])
+def joint_moves(evidence: Evidence) -> Flags:
+    """Return the observed rows (n, N) in which a joint moves: at rest no model tells friction from load.
+
+    Of a joint that never does, those in which the arm moves.
+    """
+    runs = [evidence.runs[r] for r in observed_runs(evidence)]
+    found = np.concatenate([regime(r) < 2 for r in runs])
+    arm = np.concatenate([r.arm_moves for r in runs])
+    return np.where(found.any(axis=0), found, arm[:, None])
 
 
-def _interval(left: LeftOut, moving: list[NDArray[np.bool_]]) -> Array:
+def rms_where(errors: Sequence[Array], moving: Flags) -> Array:
+    """Return the rms (N,) of errors (n, N) of some runs over the rows that count for each joint."""
+    squares = np.where(moving, np.concatenate(errors) ** 2, 0.0)
+    return np.asarray(np.sqrt(squares.sum(axis=0) / np.maximum(moving.sum(axis=0), 1)), np.float64)
+
+
+def _interval(left: LeftOut, moving: Flags) -> Array:
     """95 % interval (N, 2) of the rms by drawing whole folds with replacement (Kuensch 1989)."""
-    errors = np.concatenate([e[m] for e, m in zip(left.residual, moving, strict=True)])
-    folds = np.concatenate([f[m] for f, m in zip(left.fold, moving, strict=True)])
+    squares, folds = np.where(moving, np.concatenate(left.residual) ** 2, 0.0), np.concatenate(left.fold)
     numbers = np.unique(folds)
-    if not len(numbers):
-        return np.zeros((errors.shape[1], 2))
-    squares = np.array([np.sum(errors[folds == k] ** 2, axis=0) for k in numbers])
-    counts = np.array([np.sum(folds == k) for k in numbers])
+    by_fold = np.array([squares[folds == k].sum(axis=0) for k in numbers])
+    counts = np.array([moving[folds == k].sum(axis=0) for k in numbers])
     drawn = np.random.default_rng(_SEED).integers(0, len(numbers), (_DRAWS, len(numbers)))
-    rms = np.sqrt(squares[drawn].sum(axis=1) / counts[drawn].sum(axis=1)[:, None])
+    rms = np.sqrt(by_fold[drawn].sum(axis=1) / np.maximum(counts[drawn].sum(axis=1), 1))
     return np.asarray(np.percentile(rms, [2.5, 97.5], axis=0).T, np.float64)
 
 

@@ -45,10 +45,10 @@ def parameters_of(
         return _link(evidence, c, size, std)
     simple = {
         "encoder_offset": ("offset", -1.0, "rad"),
-        "backlash": ("gap", 1.0, "rad"),
         "time_delay": ("delay", 1.0, "s"),
         "rotor_inertia": ("inertia", 1.0, "kg m^2"),
         "frozen_joint_coupling": ("share", 1.0, "1"),
+        "dropped_coupling": ("share", 1.0, "1"),
     }
     if (
         c.effect == "drive_gain"
@@ -58,6 +58,10 @@ def parameters_of(
     if c.effect in simple:
         name, sign, unit = simple[c.effect]
         return {name: quantity(sign * size[0], std[0], unit)}
+    if c.effect == "backlash":  # two gaps in the proportion that their coefficients have
+        ends, total = np.array([v for _, v in c.values]), float(size.sum())
+        gap = float(size @ ends) / total
+        return {"gap": quantity(gap, float(np.linalg.norm((ends - gap) * std)) / total, "rad")}
     if c.effect == "joint_elasticity":
         return {"stiffness": quantity(1 / size[0], std[0] / size[0] ** 2, "Nm/rad")}
     if c.effect == "base_tilt":

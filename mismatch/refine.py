@@ -1,6 +1,7 @@
 """The refined model: published or referenced rigid body, Coulomb and viscous friction, and what was found."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,8 +34,9 @@ def refined(
 
     values: by position in `accepted`, nonlinear values that replace those of the grid.
     """
-    space = evidence.setup.space
-    directions, used = plain(evidence, accepted)
+    evidence, space = _in_full(evidence), evidence.setup.space
+    held = [a for a in accepted if a.score.candidate.effect != "dropped_coupling"]
+    directions, used = plain(evidence, held)
     theta, spread = _fit(evidence, directions, used)
     full = np.zeros(space.size)
     full[used] = theta
@@ -62,16 +64,37 @@ def refined(
     return _geometry(changed, robot, accepted)
 
 
+def _in_full(evidence: Evidence) -> Evidence:
+    """Return the evidence about a prior mean that drops no coupling: the refined model is the full one."""
+    setup = evidence.setup
+    return replace(evidence, setup=replace(setup, lacking=tuple(x for x in setup.lacking if not x.nominal)))
+
+
 def _short(value: float) -> float:
     return float(f"{value:.{_DIGITS}g}")
 
 
-def plain(evidence: Evidence, accepted: Sequence[Accepted]) -> tuple[Directions, NDArray[np.int64]]:
-    """Columns of the model that is handed over, and which of the space's parameters they move."""
+def unnamed(evidence: Evidence, accepted: Sequence[Accepted]) -> Directions:
+    """Columns of the same model without its findings.
+
+    Where one of these acts as masses do, masses stay as published: over many rows they would take its place.
+    """
+    massive = any(a.score.candidate.effect in _AS_MASSES for a in accepted if a.is_finding)
+    rest = () if massive else [a for a in accepted if not a.is_finding]
+    return plain(evidence, rest, _HELD if massive else TIGHT)[0]
+
+
+def plain(
+    evidence: Evidence, accepted: Sequence[Accepted], tight: float = TIGHT
+) -> tuple[Directions, NDArray[np.int64]]:
+    """Columns of the model that is handed over, and which of the space's parameters they move.
+
+    tight: of their wide prior, what base parameters have where no finding frees them.
+    """
     space, found = evidence.setup.space, evidence.found
     free = evidence.has_reference or any(a.score.candidate.effect in _INERTIAL for a in accepted)
     keep = list(range(len(space.base)))
-    std = list(evidence.base_std * (1.0 if free else TIGHT))
+    std = list(evidence.base_std * (1.0 if free else tight))
     for j in range(space.dof):
         for k, c in enumerate(space.own):
             if c.usual:
@@ -89,6 +112,8 @@ def plain(evidence: Evidence, accepted: Sequence[Accepted]) -> tuple[Directions,
 
 
 _INERTIAL = ("payload", "link_inertial", "rotor_inertia", "base_free")
+_AS_MASSES = (*_INERTIAL, "base_tilt", "encoder_offset", "frozen_joint_coupling", "dropped_coupling")
+_HELD = 1e-4
 
 
 def _fit(evidence: Evidence, directions: Directions, used: NDArray[np.int64]) -> tuple[Array, Array]:

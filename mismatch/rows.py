@@ -4,6 +4,7 @@ Both sides pass the same zero-phase low-pass, and momentum is differentiated by 
 (identify/kernel.py). Rows stand four to a period of the cutoff.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -18,19 +19,17 @@ from . import signs
 from .columns import WIDTH, Space
 from .fast import Fast, fast_band
 from .flexible import curves
-from .physics import slopes, tilts
+from .lacking import Lacking
 from .track import Setup, Track, between, remembers, sampled, track_of
 
 Array = NDArray[np.float64]
 
 #: Rows whose samples are worked on together.
 _PORTION = 300
-#: Hz; slopes of the rigid body are smooth: they are evaluated at least this often, and interpolated.
-_SLOPE_RATE = 100.0
 #: s; delays at which the torque's own change is taken, so that a coefficient is a delay near each.
 DELAYS = (0.004, 0.01, 0.02)
-#: Nm; a gear's load within this of zero has no flank.
-FLANK = 0.5
+#: Nm; a drive's torque within this has no sign.
+DRIVE = 0.02
 
 
 @dataclass(frozen=True)
@@ -114,7 +113,7 @@ def _own(track: Track, part: slice, setup: Setup) -> Array:
     if setup.limits is not None:
         found += curves(
             track.q[part], track.qd[part], track.load[part], track.temperature[part], track.since[part],
-            direction, setup.limits,
+            direction, signs.sign(_torque(track, part, setup), DRIVE), setup.limits,
         )  # fmt: skip
     return np.stack(found, axis=2)
 
@@ -129,24 +128,19 @@ def _torque(track: Track, part: slice, setup: Setup) -> Array:
 def _common(track: Track, part: slice, setup: Setup) -> tuple[Array, Array]:
     """Columns that act on all joints: what is differentiated and what is kept, each (T, N, S)."""
     n, t = setup.physics.dof, track.time[part]
-    every = max(1, int(1 / _SLOPE_RATE / max(float(np.median(np.diff(t))), 1e-6)))
-    pick = np.unique(np.append(np.arange(0, len(t), every), len(t) - 1))
-    q, qd = track.q[part][pick], track.qd[part][pick]
-    slope = slopes(setup.physics, setup.base - setup.physics.rotors, q, qd)
-    flat = {k: between(t, t[pick], v.reshape(len(pick), -1)).reshape(len(t), n, n) for k, v in slope.items()}
+    slope = track.slopes.along(t)
     load, rate = track.calm[part], track.load_rate[part]
-    flank, flank_rate = signs.sign(load, FLANK), signs.slope(load, FLANK) * rate
     moved, kept = list[Array](), list[Array]()
-    for dq, dv in ((None, None), (-load, -rate), (-flank, -flank_rate)):
+    for dq, dv in ((None, None), (-load, -rate)):
         for j in range(n):
             by_q = 1.0 if dq is None else dq[:, j : j + 1]
-            p, b = flat["pq"][:, :, j] * by_q, flat["bq"][:, :, j] * by_q
+            p, b = slope["pq"][:, :, j] * by_q, slope["bq"][:, :, j] * by_q
             if dv is not None:
-                p = p + flat["pv"][:, :, j] * dv[:, j : j + 1]
-                b = b + flat["bv"][:, :, j] * dv[:, j : j + 1]
+                p = p + slope["pv"][:, :, j] * dv[:, j : j + 1]
+                b = b + slope["bv"][:, :, j] * dv[:, j : j + 1]
             moved.append(p)
             kept.append(-b)
-    turned = between(t, t[pick], tilts(setup.physics, q).reshape(len(pick), -1)).reshape(len(t), n, 2)
+    turned = slope["tilt"]
     for k in range(2):
         moved.append(np.zeros_like(load))
         kept.append(turned[:, :, k])
@@ -156,22 +150,22 @@ def _common(track: Track, part: slice, setup: Setup) -> tuple[Array, Array]:
         for delay in DELAYS:
             moved.append(np.zeros_like(load))
             kept.append((between(np.maximum(t - delay, t[0]), t, torque) - torque) / delay)
-    if setup.frozen is not None:
-        moved.append(track.beyond[part, :n])
-        kept.append(-track.beyond[part, n:])
+    for k in range(len(setup.lacking)):
+        moved.append(track.beyond[part, k, :n])
+        kept.append(-track.beyond[part, k, n:])
     return np.stack(moved, axis=2), np.stack(kept, axis=2)
 
 
-def common_names(dof: int, frozen: bool = False) -> tuple[str, ...]:
-    """Return the names of the columns of `_common`; frozen: whether joints beyond the model move."""
+def common_names(dof: int, lacking: Sequence[Lacking] = ()) -> tuple[str, ...]:
+    """Return the names of the columns of `_common`; lacking: what the model lacks by its form."""
     joints = range(1, dof + 1)
-    per_joint = [f"{kind}{j}" for kind in ("encoder", "elasticity", "backlash") for j in joints]
+    per_joint = [f"{kind}{j}" for kind in ("encoder", "elasticity") for j in joints]
     return (
         *per_joint,
         "roll",
         "pitch",
         *(f"{x}{k + 1}" for x in ("delay", "reversal") for k in range(len(DELAYS))),
-        *(["frozen"] if frozen else []),
+        *(x.name for x in lacking),
     )
 
 

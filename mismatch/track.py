@@ -3,6 +3,7 @@
 Speeds without noise, the torque that each gear carries, the time since reversals, and terms with memory.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,10 +16,11 @@ from ..identify.rows import GAP, REST, SAMPLES_PER_PERIOD
 from ..recordings import Recording
 from ..robots.model import TermData
 from ..symbolic.terms import CATALOGUE
-from .columns import Space
+from .columns import SLACK, Space
 from .flexible import Ranges
-from .frozen import Frozen
-from .physics import Physics
+from .lacking import Lacking
+from .physics import Physics, slopes, tilts
+from .slack import within_gap
 from .speed import smooth_speeds
 
 Array = NDArray[np.float64]
@@ -31,6 +33,8 @@ FASTEST = 30.0
 #: s and rad: within so little travel for so long a joint is at rest, bouncing and creeping included; what
 #: turns round sooner passes through zero speed.
 PAUSE, BRISTLE = 0.15, 1e-3
+#: Hz; slopes of the rigid body are smooth: they are evaluated at least this often, and interpolated.
+_SLOPE_RATE = 100.0
 #: s; wind-up and delay are sought in torques no faster than this: noise of the acceleration is in the
 #: torque's error, too, and would pass for them (errors in variables).
 CALM = 0.04
@@ -41,8 +45,8 @@ class Setup:
     """What rows are made with. gains (N,) Nm/A; base (B,): parameters of loads and slopes.
 
     friction (N, 2): Coulomb and viscous, of the torque that is delayed or scaled; limits: ranges of the
-    flexible curve (None: it is left out). known: terms whose torque is taken off what was measured. frozen:
-    the joints beyond (None: they stand still, or nothing is known of them).
+    flexible curve (None: it is left out). known: terms whose torque is taken off what was measured.
+    lacking: what the model lacks by its form.
     """
 
     physics: Physics
@@ -52,7 +56,25 @@ class Setup:
     friction: Array
     limits: Ranges | None = None
     known: tuple[TermData, ...] = ()
-    frozen: Frozen | None = None
+    lacking: tuple[Lacking, ...] = ()
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """The rigid body's slopes along a recording (physics.slopes, and `tilt` of physics.tilts).
+
+    time (K,): s; values: each (K, N, M).
+    """
+
+    time: Array
+    values: Mapping[str, Array]
+
+    def along(self, time: Array) -> dict[str, Array]:
+        """Return each at instants (T,), interpolated, (T, N, M)."""
+        return {
+            k: between(time, self.time, v.reshape(len(v), -1)).reshape(len(time), *v.shape[1:])
+            for k, v in self.values.items()
+        }
 
 
 @dataclass(frozen=True)
@@ -76,8 +98,9 @@ class Track:
     steady: Array
     since: Array
     moving: NDArray[np.bool_]
-    beyond: Array  # (T, 2 N): momentum and beta that joints beyond the model add
+    beyond: Array  # (T, L, 2 N): momentum and beta that the model lacks by its form
     held: Array  # (T, N, H): columns that remember, made over the whole recording at once
+    slopes: Slopes
 
 
 def track_of(recording: Recording, setup: Setup) -> tuple[Track, Kernel, float]:
@@ -88,13 +111,15 @@ def track_of(recording: Recording, setup: Setup) -> tuple[Track, Kernel, float]:
     kernel = Kernel(min(DERIVED if recording.qd is None else CUTOFF, rate / SAMPLES_PER_PERIOD))
     everything, speed = recording.q, calm_speeds(recording)
     q, qd = everything[:, :n], speed[:, :n]
-    beyond = setup.frozen.lacking(everything, speed) if setup.frozen else np.zeros((len(q), 2 * n))
+    beyond = np.empty((len(q), 0, 2 * n))
+    if setup.lacking:
+        beyond = np.stack([x.column(everything, speed) for x in setup.lacking], axis=1)
     hot = recording.joint_temperatures
     temperature = np.full_like(q, 30.0) if hot is None else hot[:, :n]
     track = Track(
         time, q, qd, recording.current[:, :n] * setup.gains, temperature,
         *_load(time, q, qd, setup, kernel, rate),
-        _since(time, qd), moves(q, rate), beyond, np.empty((len(q), n, 0)),
+        _since(time, qd), moves(q, rate), beyond, np.empty((len(q), n, 0)), _slopes(time, q, qd, setup),
     )  # fmt: skip
     track = replace(track, measured=track.measured - _known(track, setup))
     return replace(track, held=_held(track, setup)), kernel, rate
@@ -167,19 +192,42 @@ def _since(time: Array, qd: Array) -> Array:
     return found
 
 
+def _slopes(time: Array, q: Array, qd: Array, setup: Setup) -> Slopes:
+    """Slopes of the links alone; none where no column needs them."""
+    if not setup.space.common:
+        return Slopes(time, {})
+    every = max(1, int(1 / _SLOPE_RATE / max(float(np.median(np.diff(time))), 1e-6)))
+    pick = np.unique(np.append(np.arange(0, len(time), every), len(time) - 1))
+    found = slopes(setup.physics, setup.base - setup.physics.rotors, q[pick], qd[pick])
+    return Slopes(time[pick], {**found, "tilt": tilts(setup.physics, q[pick])})
+
+
 def remembers(term: str) -> bool:
-    """Return whether a term has a state."""
-    return bool(CATALOGUE[term].state)
+    """Return whether a column depends on the samples before."""
+    return term == SLACK or (term in CATALOGUE and bool(CATALOGUE[term].state))
 
 
 def _held(track: Track, setup: Setup) -> Array:
-    """Columns of the terms with memory (T, N, H), in the order of the space's own columns."""
+    """Columns with memory (T, N, H), in the order of the space's own columns."""
     found = [
-        sampled(track, slice(None), c.term, c.parameter, c.values)
+        _slack(track, c.value["gap"])
+        if c.term == SLACK
+        else sampled(track, slice(None), c.term, c.parameter, c.values)
         for c in setup.space.own
-        if c.term in CATALOGUE and remembers(c.term)
+        if remembers(c.term)
     ]
     return np.stack(found, axis=2) if found else track.held
+
+
+def _slack(track: Track, gap: float) -> Array:
+    """Torque (T, N) that each motor gives more when its gear has slack, gap rad to each side."""
+    slope, load = track.slopes.along(track.time), track.calm
+    inertia, sag = (np.diagonal(slope[k], axis1=1, axis2=2) for k in ("pv", "bq"))
+    found = np.empty_like(load)
+    for j in range(load.shape[1]):
+        place, rate = within_gap(track.time, load[:, j], inertia[:, j], gap)
+        found[:, j] = np.gradient(inertia[:, j] * rate, track.time) - sag[:, j] * place
+    return found
 
 
 def sampled(

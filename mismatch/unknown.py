@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from .candidates import Candidate
 from .evidence import Evidence
-from .judging import EVIDENCE, SHADOW, STEADY, Judged, effective
+from .judging import EVIDENCE, STEADY, Judged, effective, shade
 from .naming import scored
 
 Array = NDArray[np.float64]
@@ -34,10 +34,8 @@ def unknowns(evidence: Evidence, weighed: Evidence, judged: Judged) -> list[Unkn
         j = s.candidate.joint
         assert j is not None
         share = float(1 - np.exp(-2 * max(s.total, 0.0) / max(effective(evidence, j), 1.0)))
-        named = max(
-            (a.score.evidence for a in judged.accepted if a.score.candidate.joint in (None, j)), default=0.0
-        )
-        if s.evidence < SHADOW * named:
+        mine = (a for a in judged.accepted if a.score.candidate.joint in (None, j))
+        if s.evidence < max((shade(a, evidence.setup.space.dof) for a in mine), default=0.0):
             continue
         if min(s.evidence, s.total) > _EVIDENCE and s.steadiness > _STEADY and share > _SHARE:
             result.append(Unknown(j, share))

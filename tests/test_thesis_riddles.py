@@ -59,9 +59,23 @@ def test_the_refined_model_has_their_mass(said, arm) -> None:
 
 
 @pytest.mark.slow
-def test_explain_names_the_load_and_how_heavy_it_is(said) -> None:
-    mass, std = map(float, re.search(r"payload on \[1, 2, 3\].*mass ([\d.]+) ± ([\d.]+)", said[0]).groups())
+@pytest.mark.parametrize("arm", [0, 1])
+def test_explain_names_the_load_and_the_coupling(said, arm) -> None:
+    mass, std = map(float, re.search(r"payload on \[1, 2, 3\].*mass ([\d.]+) ± ([\d.]+)", said[arm]).groups())
     assert abs(mass - WRIST) < std
+    share, std = map(
+        float, re.search(r"dropped_coupling on \[1, 2, 3\].*share ([\d.]+) ± ([\d.]+)", said[arm]).groups()
+    )
+    assert abs(share - 1.0) < 0.1 and std < 0.1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("arm", [0, 1])
+def test_explain_names_nothing_that_is_not_there(said, arm) -> None:
+    drag = {"nonlinear_viscous"}  # of the factory sheet
+    known = {"payload", "dropped_coupling", "load_dependent_friction"} | drag
+    assert set(re.findall(r"^  (\w+) on \[", said[arm], re.M)) <= known
+    assert ("load_dependent_friction" in said[arm].partition("explain, told")[2]) == bool(arm)
 
 
 @pytest.mark.slow

@@ -131,5 +131,6 @@ RIGID = (
         "move several joints fast at once, then each alone",
         "use the full model (gen-model --variant full)",
         r"M_{ij}(q)\,\ddot q_j + C_{ij}(q, \dot q)\,\dot q_j",
+        {"share": Parameter("1", "part of the torque that the full Lagrangian has more", None, (0.5, 1.5))},
     ),
 )

@@ -176,7 +176,7 @@ def recorded(tmp_path_factory):
 def test_explain_names_a_load_that_is_picked_up_and_put_down(recorded, with_reference) -> None:
     path, grips = recorded("carried", 1)
     reference = tuple(recorded("free", k)[0] for k in (2, 3)) if with_reference else ()
-    answer = explain(Task((path,), reference, ROBOT, DIGEST, 6, propose=False))
+    answer = explain(Task((path,), reference, ROBOT, DIGEST, 6, propose=False, thresholds=False))
     first = answer.findings["findings"][0]
     assert (first["effect"], first["joints"]) == ("payload", [1, 2, 3, 4, 5, 6])
     assert np.ravel(first["intervals"]) == pytest.approx(np.ravel(grips), abs=0.3)
@@ -191,5 +191,5 @@ def test_explain_names_a_load_that_is_picked_up_and_put_down(recorded, with_refe
 
 @pytest.mark.slow
 def test_a_robot_that_picks_nothing_up_carries_nothing(recorded) -> None:
-    answer = explain(Task((recorded("free", 2)[0],), (), ROBOT, DIGEST, 6, propose=False))
+    answer = explain(Task((recorded("free", 2)[0],), (), ROBOT, DIGEST, 6, propose=False, thresholds=False))
     assert "payload" not in [f["effect"] for f in answer.findings["findings"]]

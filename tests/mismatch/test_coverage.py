@@ -15,7 +15,7 @@ def said(run, rate: float = 125.0, has_reference: bool = True, **fields) -> tupl
     known = {"qd": q, "joint_temperatures": q + 30} | fields
     recording = Recording("r", time, q, q, **known)
     evidence = SimpleNamespace(
-        runs=(run,), observed=(True,), has_reference=has_reference, setup=SimpleNamespace(frozen=None)
+        runs=(run,), observed=(True,), has_reference=has_reference, setup=SimpleNamespace(lacking=())
     )  # fmt: skip
     found = cannot_show(evidence, [recording])
     return " | ".join(found.texts), found.hopeless
