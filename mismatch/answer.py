@@ -15,11 +15,12 @@ from ..robots.model import Model
 from ..symbolic.effects import EFFECTS
 from ..symbolic.terms import CATALOGUE
 from ..symbolic.terms.forms import equation
+from .acceptance import EVIDENCE
 from .candidates import Candidate
 from .carried import Carried
 from .episodes import Contact, Episode, involved
 from .evidence import Evidence
-from .judging import EVIDENCE, Accepted, Judged, effective
+from .judging import Accepted, Judged, effective
 from .quantities import Quantity, parameters_of, payload_numbers, quantity
 from .refit import LeftOut, observed_runs
 from .report.wording import joints_text, title

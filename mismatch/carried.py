@@ -44,6 +44,8 @@ MANY = 4
 LEAST, MOST = 0.05, 0.9
 #: kg, and mass over its standard deviation.
 LIGHTEST, SURE = 0.05, 5.0
+#: m from the last joint's centre to the load's: further no gripper holds it.
+REACH = 0.5
 #: Nats by which it beats a load that is never or always there; nats of a stretch alone.
 EVIDENCE, STRETCH = 30.0, 3.0
 #: Nats of the first guess.
@@ -285,6 +287,8 @@ def objection(found: _Try) -> str:
         return f"evidence {found.fit.evidence(_TEN):.1f} nats, {EVIDENCE:g} asked"
     if mass < max(LIGHTEST, SURE * std):
         return f"has a mass of {mass:.2g} kg with a standard deviation of {std:.2g} kg"
+    if (away := float(np.linalg.norm(found.value[1:4])) / mass) > REACH:
+        return f"has its centre {away:.2g} m from the last joint"
     lengths = [(part.stop - part.start) * x.rows.step for x, part, _ in found.events]
     if max(lengths) < LONG and len(lengths) < MANY:
         return "is held no longer than a push lasts"

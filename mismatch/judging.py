@@ -6,35 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .acceptance import EVIDENCE, STEADY, objection
 from .candidates import Candidate
 from .evidence import Evidence
-from .flexible import names
 from .grams import regime
 from .naming import Scored, chosen, nuisance, ranked, scored, steadiness, tested
+from .plausibility import implausible, is_short, misshapen, of_all_joints
 from .selection import Directions
 
 Array = NDArray[np.float64]
 Key = tuple[str, int | None]
 
-#: Nats on left-out data and all data: odds of e^10 against, for a few hundred hypotheses tried.
-EVIDENCE = 10.0
-#: Mean gain of a fold over its standard error; share of folds that improve.
-STEADY, IMPROVED = 2.0, 0.6
-#: Or, where some folds tell far more than others (the warm ones, those with jerks): a size that no fold alone
-#: makes (jackknife), with nearly all folds improved, or surer and with twice the evidence.
-ALWAYS, CONSISTENT, SURE = 0.75, 4.0, 5.0
-#: Or the baseline bends to imitate it, so that left-out blocks gain little, but no block shakes its size, and
-#: twice the evidence counts how far the baseline had to bend: then this share of the left-out nats will do,
-#: and half the steadiness.
-UNSHAKEN, BENT = 8.0, 0.3
-#: A size that is not this many of its jackknife's standard errors away from zero is no size at all.
-SIZED = 3.0
-#: Or it is a blow, which is rare: so many times the evidence.
-BLOWS = 3.0
-#: A named effect explains at least this share of what its joint's model leaves: less is of no use to anyone.
-SHARE = 0.01
-#: Friction over the angle is a wave unless any curve explains so much more than it.
-NO_WAVE = 0.5
 #: A rival is told apart by this many nats, and by a steady lead where that is a small share of the evidence.
 APART, CLOSE = 5.0, 0.05
 #: A rival explains at least this share of what the best does.
@@ -56,14 +38,6 @@ MOST, TRIES = 6, 10
 UNSEEN = ("coulomb_friction", "viscous_friction", "drive_gain")
 #: s; current and motion may be less than this apart without anything being wrong: a cycle and a half.
 SYNCHRONOUS = 0.003
-#: What builds up with travel or late is much of the Coulomb level, or it is something else; over less travel
-#: (rad) than the catalogue's, which every gear shows a little of, more of it. A reference holds what every
-#: gear has: a change may be small.
-_PART_OF_COULOMB = {"presliding_hysteresis": 0.2, "velocity_lag": 0.5}
-_TRAVEL, _PART_WITHIN = 0.005, 0.35
-_PART_CHANGED = 0.1
-#: What slack does follows from its width: the size of its column is one, or at least this.
-_LEAST_GAP = 0.3
 
 
 @dataclass(frozen=True)
@@ -131,7 +105,8 @@ def judge(
             objection(test, part)
             or implausible(evidence, test)
             or shadow(test, accepted, evidence.setup.space.dof)
-            or _misshapen(weighed, model, test)
+            or misshapen(weighed, model, test)
+            or of_all_joints(weighed, model, test)
         )
         tries += 1
         if why:
@@ -188,82 +163,12 @@ def effective(evidence: Evidence, joint: int | None) -> float:
     return float(found.mean() if joint is None else found[joint])
 
 
-def objection(test: Scored, part: float) -> str:
-    """Return in words why a hypothesis is not believed, or nothing."""
-    if test.candidate.effect == "backlash":
-        return _objection_to_blows(test, part)
-    unshaken = test.consistency >= UNSHAKEN and test.evidence >= 2 * EVIDENCE and test.steadiness >= 1
-    if test.evidence < EVIDENCE or test.total < (BENT if unshaken else 1.0) * EVIDENCE:
-        return f"evidence {min(test.evidence, test.total):.1f} nats, {EVIDENCE:g} asked"
-    if test.consistency < SIZED:
-        return f"its size is not the same over the recordings (jackknife t = {test.consistency:.1f})"
-    consistent = test.improved >= ALWAYS and test.consistency >= CONSISTENT
-    sure = test.total >= 2 * EVIDENCE and test.consistency >= SURE
-    if test.steadiness < STEADY and not (consistent or sure or unshaken):
-        return f"not steady over the recordings (t = {test.steadiness:.1f})"
-    if test.improved < (0.5 if sure or unshaken else IMPROVED):
-        return f"improves only {100 * test.improved:.0f} % of the left-out parts"
-    if part < SHARE:
-        return f"explains only {100 * part:.1f} % of what is left"
-    return ""
-
-
-def _objection_to_blows(test: Scored, part: float) -> str:
-    """Return in words why slack is not believed, or nothing.
-
-    A blow lasts 20 ms: blocks in which it comes gain or, where it is mistimed, lose more than all the others,
-    so neither gain nor size is steady. Instead its size has to be that of the gap (`implausible`).
-    """
-    if test.evidence < BLOWS * EVIDENCE or test.total < EVIDENCE:
-        return f"evidence {min(test.evidence, test.total):.1f} nats, {BLOWS * EVIDENCE:g} asked"
-    if test.improved < IMPROVED:
-        return f"improves only {100 * test.improved:.0f} % of the left-out parts"
-    return f"explains only {100 * part:.1f} % of what is left" if part < SHARE else ""
-
-
-def implausible(evidence: Evidence, test: Scored) -> str:
-    """Return in words why a hypothesis is no physics at the size that it would have, or nothing."""
-    c = test.candidate
-    if c.effect == "backlash" and not _LEAST_GAP < (times := float(test.size.sum())) < 1 / _LEAST_GAP:
-        return f"moves the arm {times:.2g} times as much as such a gap does"
-    if c.effect in _PART_OF_COULOMB and c.joint is not None:
-        level = evidence.setup.friction[c.joint, 0]
-        least = _PART_WITHIN if _is_short(c) else _PART_OF_COULOMB[c.effect]
-        if abs(test.size[0]) < (_PART_CHANGED if evidence.has_reference else least) * level:
-            return f"is {100 * abs(test.size[0]) / level:.0f} % of the Coulomb level: too little for it"
-    return ""
-
-
-def _is_short(c: Candidate) -> bool:
-    return dict(c.values).get("zs", _TRAVEL) < _TRAVEL
-
-
-def _misshapen(weighed: Evidence, model: Directions, test: Scored) -> str:
-    """Return in words that a curve which is no physics explains it far better, or nothing.
-
-    Friction over the angle that is no wave is a damaged tooth's. What turns with the sign of the drive's
-    torque, and not with that of motion, is the amplifier's. weighed: by what the hypothesis leaves.
-    """
-    c = test.candidate
-    if c.joint is None:
-        return ""
-    over, least = "drive sign", EVIDENCE
-    if c.effect == "position_dependent_friction":
-        over, least = "q sign", max(EVIDENCE, NO_WAVE * test.evidence)
-    curve = [weighed.found.curve[c.joint][k] for k, (name, _) in enumerate(names()) if name == over]
-    other = scored(weighed, model, [Candidate("unknown", c.joint, tuple(curve))])[0]
-    if (lead := other.evidence - test.evidence) > least:
-        what = {"q sign": "a curve over the angle that is no wave", "drive sign": "the torque's own sign"}
-        return f"{what[over]} explains {lead:.0f} nats more"
-    return ""
-
-
 def shadow(test: Scored, accepted: Sequence[Accepted], joints: int) -> str:
     """Return in words that a hypothesis is what a found effect's own form leaves, or nothing. joints: N."""
     c = test.candidate
     for a in accepted:
         first = a.score.candidate
-        if first.effect == "time_delay" and (c.effect == "velocity_lag" or _is_short(c)):
+        if first.effect == "time_delay" and (c.effect == "velocity_lag" or is_short(c)):
             return "with a delay friction changes its sign late as well"
         small = test.evidence < shade(a, joints) and test.consistency < OWN
         if first.joint in (None, c.joint) and small:

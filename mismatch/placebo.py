@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
+from .acceptance import EVIDENCE
 from .evidence import Evidence, residual
 from .grams import weights
-from .judging import EVIDENCE, Judged
+from .judging import Judged
 from .refit import observed_runs, parameters
 from .selection import Directions, normal_equations
 from .sharpen import without

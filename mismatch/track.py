@@ -3,7 +3,7 @@
 Speeds without noise, the torque that each gear carries, the time since reversals, and terms with memory.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -194,7 +194,7 @@ def _since(time: Array, qd: Array) -> Array:
 
 def _slopes(time: Array, q: Array, qd: Array, setup: Setup) -> Slopes:
     """Slopes of the links alone; none where no column needs them."""
-    if not setup.space.common:
+    if not (setup.space.common or any(c.term == SLACK for c in setup.space.own)):
         return Slopes(time, {})
     every = max(1, int(1 / _SLOPE_RATE / max(float(np.median(np.diff(time))), 1e-6)))
     pick = np.unique(np.append(np.arange(0, len(time), every), len(time) - 1))
@@ -209,25 +209,32 @@ def remembers(term: str) -> bool:
 
 def _held(track: Track, setup: Setup) -> Array:
     """Columns with memory (T, N, H), in the order of the space's own columns."""
-    found = [
-        _slack(track, c.value["gap"])
-        if c.term == SLACK
-        else sampled(track, slice(None), c.term, c.parameter, c.values)
-        for c in setup.space.own
-        if remembers(c.term)
-    ]
-    return np.stack(found, axis=2) if found else track.held
+    some = [c for c in setup.space.own if remembers(c.term)]
+    if not some:
+        return track.held
+    slack = _slack(track, [c.value["gap"] for c in some if c.term == SLACK])
+    return np.stack(
+        [
+            next(slack) if c.term == SLACK else sampled(track, slice(None), c.term, c.parameter, c.values)
+            for c in some
+        ],
+        axis=2,
+    )
 
 
-def _slack(track: Track, gap: float) -> Array:
-    """Torque (T, N) that each motor gives more when its gear has slack, gap rad to each side."""
-    slope, load = track.slopes.along(track.time), track.calm
-    inertia, sag = (np.diagonal(slope[k], axis1=1, axis2=2) for k in ("pv", "bq"))
-    found = np.empty_like(load)
-    for j in range(load.shape[1]):
-        place, rate = within_gap(track.time, load[:, j], inertia[:, j], gap)
-        found[:, j] = np.gradient(inertia[:, j] * rate, track.time) - sag[:, j] * place
-    return found
+def _slack(track: Track, gaps: Sequence[float]) -> Iterator[Array]:
+    """Give the torque (T, N) that each motor gives more when its gear has slack, gap rad to each side."""
+    time, load, at = track.time, track.calm, track.slopes
+    if not gaps:
+        return
+    own = (np.ascontiguousarray(np.diagonal(at.values[k], axis1=1, axis2=2)) for k in ("pv", "bq"))
+    inertia, sag = (between(time, at.time, x) for x in own)
+    for gap in gaps:
+        found = np.empty_like(load)
+        for j in range(load.shape[1]):
+            place, rate = within_gap(time, load[:, j], inertia[:, j], gap)
+            found[:, j] = np.gradient(inertia[:, j] * rate, time) - sag[:, j] * place
+        yield found
 
 
 def sampled(

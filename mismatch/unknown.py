@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .acceptance import EVIDENCE, STEADY
 from .candidates import Candidate
 from .evidence import Evidence
-from .judging import EVIDENCE, STEADY, Judged, effective, shade
+from .judging import Judged, effective, shade
 from .naming import scored
 
 Array = NDArray[np.float64]

@@ -5,9 +5,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from residuum.mismatch.acceptance import EVIDENCE, SHARE, objection
 from residuum.mismatch.candidates import Candidate
-from residuum.mismatch.judging import EVIDENCE, SHARE, Accepted, implausible, objection, shadow
+from residuum.mismatch.judging import Accepted, shadow
 from residuum.mismatch.naming import Scored
+from residuum.mismatch.plausibility import everyones, implausible
 
 HERE = Candidate("stribeck", 1, (0,))
 
@@ -61,13 +63,16 @@ def test_one_block_proves_nothing() -> None:
 @pytest.mark.parametrize(
     ("effect", "values", "part", "changed", "believed"),
     [
-        ("velocity_lag", (("lag", 0.012),), 0.45, False, False),
+        ("velocity_lag", (("lag", 0.012),), 0.4, False, False),
         ("velocity_lag", (("lag", 0.012),), 0.55, False, True),
         ("velocity_lag", (("lag", 0.012),), 0.15, True, True),
         ("velocity_lag", (("lag", 0.012),), 0.05, True, False),
         ("presliding_hysteresis", (("zs", 0.003),), 0.3, False, False),
         ("presliding_hysteresis", (("zs", 0.012),), 0.3, False, True),
         ("stribeck", (("vs", 0.04),), 0.05, False, True),
+        ("backlash", (("gap", 0.001), ("wider", 0.002)), 0.9 / 8, False, True),
+        ("backlash", (("gap", 0.001), ("wider", 0.002)), 0.1 / 8, False, False),
+        ("backlash", (("gap", 0.001), ("wider", 0.002)), -0.9 / 8, False, False),
     ],
 )
 def test_what_every_gear_has_is_no_finding_but_a_change_of_it_is(
@@ -94,3 +99,29 @@ def test_a_delay_makes_signs_late_and_a_lag_beside_it_is_none() -> None:
     assert "%" in shadow(scored([1, 1], evidence=1.0), [Accepted(scored([9, 11]), (), (), 0.5)], 6)
     surely = scored([1, 1], evidence=1.0, consistency=340.0)
     assert shadow(surely, [Accepted(scored([9, 11]), (), (), 0.5)], 6) == ""
+
+
+def test_what_acts_at_reversals_need_not_improve_blocks_without_any() -> None:
+    lag, drag = (Candidate(effect, 1, (2,)) for effect in ("velocity_lag", "viscous_friction"))
+    gain = [90.0, 0.2, -0.3, 40.0, -0.1, 6.0, -0.2, 0.1]
+    assert objection(scored(gain, candidate=lag, consistency=3.5), 0.3) == ""
+    assert "steady" in objection(scored(gain, candidate=drag, consistency=3.5), 0.3)
+    assert "steady" in objection(scored([*gain, -20.0, -30.0], candidate=lag, consistency=3.5), 0.3)
+    assert "steady" in objection(scored([130.0, 0.2, -0.3, -0.1], candidate=lag, consistency=3.5), 0.3)
+
+
+def test_slack_shows_in_blows_and_those_are_rare() -> None:
+    slack = Candidate("backlash", 1, (2, 3), (("gap", 0.001), ("wider", 0.002)))
+    gain = [1.2, 21.1, 12.4, 28.6, -40.1, 24.8, 153.2, 3.5]
+    assert objection(scored(gain, candidate=slack, consistency=1.3), 0.3) == ""
+    assert "evidence" in objection(scored([1.2, 8.0, 12.0], evidence=20.0, candidate=slack), 0.3)
+    assert "improves" in objection(scored([-1.0, -2.0, -1.0, 90.0], candidate=slack), 0.3)
+    assert "explains" in objection(scored(gain, candidate=slack), 0.001)
+
+
+@pytest.mark.parametrize(
+    ("own", "theirs", "believed"),
+    [(0.5, 0.4, False), (0.5, 0.2, True), (0.5, -0.3, True), (0.9, 0.8, True), (0.75, 0.5, False)],
+)
+def test_a_late_sign_that_other_joints_show_is_everyones(own, theirs, believed) -> None:
+    assert (everyones(own, theirs) == "") == believed

@@ -3,7 +3,11 @@
 import numpy as np
 import pytest
 
+from residuum.mismatch.explain import Task, explain
 from residuum.mismatch.slack import within_gap
+from residuum.robots import load_robot
+from residuum.virtual import Plant, effects, simulate
+from residuum.virtual.motions import fourier
 
 RATE, INERTIA, GAP = 20.0, 1.5, 0.002  # Nm/s, kg m^2, rad
 
@@ -51,3 +55,19 @@ def test_a_link_without_inertia_and_a_load_of_nothing_end() -> None:
     for load in (np.zeros(len(time)), noise):
         place, rate = within_gap(time, load, np.full(len(time), -0.01), GAP)
         assert np.all(np.abs(place) <= GAP * (1 + 1e-9)) and np.all(np.isfinite(rate))
+
+
+@pytest.mark.slow
+def test_explain_names_the_slack_of_an_axis_without_gravity(tmp_path) -> None:
+    """The virtual arm's slack is a gear with a dead zone, in MuJoCo's closed loop."""
+    robot, digest = load_robot("ur5e")
+    plant = Plant(backlash=(effects.Backlash(joint=1, gap=0.002, stiffness=2e4),))
+    paths = []
+    for seed in (1, 2):
+        paths.append(tmp_path / f"{seed}.csv")
+        simulate(robot, plant, fourier(robot, 40.0, seed), 125, seed).recording.write_csv(paths[-1])
+    answer = explain(Task(tuple(paths), (), robot, digest, 6, propose=False, thresholds=False))
+    found = [f for f in answer.findings["findings"] if f["effect"] == "backlash"]
+    assert [f["joints"] for f in found] == [[1]]
+    assert found[0]["parameters"]["gap"]["value"] == pytest.approx(0.002, rel=0.5)
+    assert found[0]["parameters"]["gap"]["unit"] == "rad"

@@ -1,0 +1,85 @@
+"""What is physics at the size that it would have, and what only looks like it."""
+
+from .candidates import Candidate
+from .evidence import Evidence
+from .flexible import names
+from .naming import Scored, scored
+from .selection import Directions
+
+#: Friction over the angle is a wave unless any curve explains so much more than it.
+NO_WAVE = 0.5
+#: Nats by which a curve that is no physics leads, to be believed in its place.
+_LEADS = 10.0
+#: What builds up with travel or late is much of the Coulomb level, or it is something else; over less travel
+#: (rad) than the catalogue's, which every gear shows a little of, more of it. A reference holds what every
+#: gear has: a change may be small.
+AT_REVERSALS = {"presliding_hysteresis": 0.2, "velocity_lag": 0.45}
+_TRAVEL, _PART_WITHIN = 0.005, 0.35
+_PART_CHANGED = 0.1
+#: How gears stop and start looks like a late sign, on all joints alike: below the first share of the
+#: Coulomb level, a joint's own lag leads that of the others so many times.
+_WHOLE, _AHEAD = 0.8, 1.7
+#: What slack does follows from its width: the size of its column is one, or at least this.
+_LEAST_GAP = 0.3
+
+
+def implausible(evidence: Evidence, test: Scored) -> str:
+    """Return in words why a hypothesis is no physics at the size that it would have, or nothing."""
+    c = test.candidate
+    if c.effect == "backlash" and not _LEAST_GAP < (times := float(test.size.sum())) < 1 / _LEAST_GAP:
+        return f"moves the arm {times:.2g} times as much as such a gap does"
+    if c.effect in AT_REVERSALS and c.joint is not None:
+        level = evidence.setup.friction[c.joint, 0]
+        least = _PART_WITHIN if is_short(c) else AT_REVERSALS[c.effect]
+        if abs(test.size[0]) < (_PART_CHANGED if evidence.has_reference else least) * level:
+            return f"is {100 * abs(test.size[0]) / level:.0f} % of the Coulomb level: too little for it"
+    return ""
+
+
+def is_short(c: Candidate) -> bool:
+    """Return whether it builds up over less travel than the catalogue's presliding."""
+    return dict(c.values).get("zs", _TRAVEL) < _TRAVEL
+
+
+def misshapen(weighed: Evidence, model: Directions, test: Scored) -> str:
+    """Return in words that a curve which is no physics explains it far better, or nothing.
+
+    Friction over the angle that is no wave is a damaged tooth's. What turns with the sign of the drive's
+    torque, and not with that of motion, is the amplifier's. weighed: by what the hypothesis leaves.
+    """
+    c = test.candidate
+    if c.joint is None:
+        return ""
+    over, least = "drive sign", _LEADS
+    if c.effect == "position_dependent_friction":
+        over, least = "q sign", max(_LEADS, NO_WAVE * test.evidence)
+    curve = [weighed.found.curve[c.joint][k] for k, (name, _) in enumerate(names()) if name == over]
+    other = scored(weighed, model, [Candidate("unknown", c.joint, tuple(curve))])[0]
+    if (lead := other.evidence - test.evidence) > least:
+        what = {"q sign": "a curve over the angle that is no wave", "drive sign": "the torque's own sign"}
+        return f"{what[over]} explains {lead:.0f} nats more"
+    return ""
+
+
+def of_all_joints(weighed: Evidence, model: Directions, test: Scored) -> str:
+    """Return in words that a late sign is that of the other joints as well, or nothing.
+
+    A reference holds what is everyone's.
+    """
+    c, level = test.candidate, weighed.setup.friction[:, 0]
+    if c.effect != "velocity_lag" or c.joint is None or weighed.has_reference:
+        return ""
+    best: dict[int, Scored] = {}
+    for s in scored(weighed, model, [x for x in weighed.found.each if x.effect == c.effect]):
+        j = s.candidate.joint
+        if j is not None and j != c.joint and (j not in best or s.evidence > best[j].evidence):
+            best[j] = s
+    theirs = max((float(s.size[0] / level[j]) for j, s in best.items()), default=0.0)
+    return everyones(float(test.size[0] / level[c.joint]), theirs)
+
+
+def everyones(own: float, theirs: float) -> str:
+    """Return in words that a joint's late sign does not stand out, or nothing; parts of the Coulomb level."""
+    if own >= _WHOLE or own >= _AHEAD * theirs:
+        return ""
+    return f"is {100 * own:.0f} % of the Coulomb level, and {100 * theirs:.0f} % on another joint"
