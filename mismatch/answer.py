@@ -123,7 +123,7 @@ def _named(p: Parts, k: int, a: Accepted) -> dict[str, Any]:
         "effect": c.effect,
         "joints": joints,
         "indistinguishable_from": a.names,
-        "confidence": _confidence(a, p.placebos),
+        "confidence": _confidence(a),
         "parameters": numbers,
         "equation": equation(CATALOGUE[c.terms[0]])
         if c.terms and c.terms[0] in CATALOGUE
@@ -143,13 +143,10 @@ def _joints(p: Parts, c: Candidate) -> list[int]:
     return list(range(1, p.evidence.setup.space.dof + 1)) if c.joint is None else [c.joint + 1]
 
 
-def _confidence(a: Accepted, placebos: float | None) -> float:
-    """Probability of the name: odds of the evidence, tempered by steadiness, split with its rivals.
-
-    placebos: share of shifted columns that would have been named too.
-    """
+def _confidence(a: Accepted) -> float:
+    """Probability of the name: odds of the evidence, tempered by steadiness, split with its rivals."""
     sure = float(norm.cdf(a.score.steadiness)) * float(1 - np.exp(-max(a.score.total, 0.0) / 10))
-    return round(SUREST * sure * (1 - (placebos or 0.0)) / (1 + 0.5 * len(a.names)), 3)
+    return round(SUREST * sure / (1 + 0.5 * len(a.names)), 3)
 
 
 def _shares(p: Parts, joints: Sequence[int], a: Accepted) -> dict[int, float]:

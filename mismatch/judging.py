@@ -29,7 +29,7 @@ OWN = 100.0
 RIGID = (
     "payload", "link_inertial", "rotor_inertia", "base_free", "frozen_joint_coupling", "dropped_coupling",
 )  # fmt: skip
-RIGID_SHADOW = 0.001
+RIGID_SHADOW = 0.01
 #: One body that explains this share of what all base parameters together do has that name.
 ONE_BODY = 0.9
 #: Findings and failed attempts at most.
