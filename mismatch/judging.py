@@ -32,6 +32,8 @@ RIGID = (
 RIGID_SHADOW = 0.01
 #: One body that explains this share of what all base parameters together do has that name.
 ONE_BODY = 0.9
+#: Levels that a change with temperature looks like where nothing warms.
+_WITHOUT_HEAT = ("coulomb_friction", "viscous_friction")
 #: Findings and failed attempts at most.
 MOST, TRIES = 6, 10
 #: Without a reference: fitted anyway, or only a matter of which masses are believed.
@@ -93,7 +95,7 @@ def judge(
         order = [s for s in every if s.candidate.key not in barred]
         if not order or order[0].evidence < EVIDENCE:
             break
-        best = _likelier(order)
+        best = likelier(order)
         barred.add(best.candidate.key)
         if why := implausible(evidence, best):
             hollow.add(best.candidate.key)
@@ -118,10 +120,11 @@ def judge(
     return Judged(tuple(accepted), model, tuple(refused))
 
 
-def _likelier(order: Sequence[Scored]) -> Scored:
+def likelier(order: Sequence[Scored]) -> Scored:
     """Return the best hypothesis, but a name where freed base parameters, which are none, explain no more.
 
-    And a load where a changed link explains no more: links rarely change.
+    And a load where a changed link explains no more, since links rarely change; and a level of friction where
+    its change with temperature explains no more: recordings that barely warm cannot show one.
     """
     best = order[0]
     if best.candidate.effect == "base_free":
@@ -130,6 +133,10 @@ def _likelier(order: Sequence[Scored]) -> Scored:
     if best.candidate.effect == "link_inertial":
         loads = [s for s in order if s.candidate.effect == "payload" and not told_apart(best, s)]
         return loads[0] if loads else best
+    if best.candidate.effect == "temperature_dependent_friction":
+        here = [s for s in order if s.candidate.joint == best.candidate.joint]
+        cold = [s for s in here if s.candidate.effect in _WITHOUT_HEAT and not told_apart(best, s)]
+        return cold[0] if cold else best
     return best
 
 

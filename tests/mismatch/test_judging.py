@@ -7,7 +7,7 @@ import pytest
 
 from residuum.mismatch.acceptance import EVIDENCE, SHARE, objection
 from residuum.mismatch.candidates import Candidate
-from residuum.mismatch.judging import Accepted, shadow
+from residuum.mismatch.judging import Accepted, likelier, shadow
 from residuum.mismatch.naming import Scored
 from residuum.mismatch.plausibility import everyones, implausible
 
@@ -125,3 +125,24 @@ def test_slack_shows_in_blows_and_those_are_rare() -> None:
 )
 def test_a_late_sign_that_other_joints_show_is_everyones(own, theirs, believed) -> None:
     assert (everyones(own, theirs) == "") == believed
+
+
+def test_friction_changes_with_temperature_only_where_a_plain_level_explains_less() -> None:
+    heat, level = (
+        Candidate(f"{x}_friction", 1, (k,)) for k, x in enumerate(("temperature_dependent", "coulomb"))
+    )
+    gain = [30.0, 40.0, 35.0]
+    best = scored(gain, evidence=104.0, candidate=heat)
+    alike = scored(gain, evidence=100.0, candidate=level)
+    worse = scored([1.0, 2.0, 1.0], evidence=60.0, candidate=level)
+    elsewhere = scored(gain, evidence=100.0, candidate=Candidate("coulomb_friction", 2, (1,)))
+    assert likelier([best, alike]) is alike
+    assert likelier([best, worse]) is likelier([best, elsewhere]) is best
+
+
+def test_freed_base_parameters_are_no_name_where_one_body_does_as_much() -> None:
+    free, load = Candidate("base_free", None, (0,)), Candidate("payload", None, (1,))
+    best = scored([30.0, 40.0], evidence=100.0, candidate=free)
+    most, some = (scored([30.0, 40.0], evidence=e, candidate=load) for e in (95.0, 70.0))
+    assert likelier([best, most]) is most
+    assert likelier([best, some]) is best
