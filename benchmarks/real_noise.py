@@ -24,6 +24,7 @@ from residuum.mismatch.columns import WIDTH, Column, space_of
 from residuum.mismatch.evidence import Evidence, gather, renewed, residual
 from residuum.mismatch.judging import Judged, judge
 from residuum.mismatch.naming import chosen, nuisance, reweighed
+from residuum.mismatch.proof import rms_where
 from residuum.mismatch.refit import parameters
 from residuum.mismatch.rows import make_rows
 from residuum.recordings import Recording, read
@@ -128,9 +129,7 @@ def _torques(evidence: Evidence, vector: Array) -> list[Array]:
 
 
 def _rms(values: Sequence[Array], evidence: Evidence) -> Array:
-    moving = [r.arm_moves for r in evidence.runs]
-    joined = np.concatenate([v[m] for v, m in zip(values, moving, strict=True)])
-    return np.asarray(np.sqrt(np.mean(joined**2, axis=0)), np.float64)
+    return rms_where(values, np.concatenate([r.arm_moves for r in evidence.runs])[:, None])
 
 
 class _Visible:

@@ -89,7 +89,7 @@ def candidates(
     """Return every hypothesis of the catalogue that is a column or an inertial direction.
 
     own_std (N, K): prior width of each own column; base_std (B,): of a base parameter. load (N, 2): range of
-    what each gear carries, Nm; a load that does not reverse, or barely, shows no slack.
+    what each gear carries, Nm; a load that does not reverse shows no slack.
     """
     vectors, std, each = list[Array](), list[float](), list[Candidate]()
 

@@ -111,9 +111,9 @@ def _explained(
     sharp = sharpened(weighed, judged)
     progress("proof on left-out blocks")
     kept = [a for a in judged.accepted if a.is_finding or not evidence.has_reference]
-    baseline = unnamed(weighed, kept)
+    baseline, whole = unnamed(weighed, kept), plain(weighed, kept)[0]
     seen = None if load is None else reweighed(recorded, baseline)
-    proof, before, after = prove(weighed, baseline, plain(weighed, kept)[0], seen)
+    proof, before, after = prove(weighed, baseline, whole, seen)
     gear = float(task.robot.joint[0].gear)
     runs = [evidence.runs[r] for r in which]
     places = regions(runs, names, before.residual, gear)
@@ -123,7 +123,7 @@ def _explained(
     model = refined(weighed, nominal, task.robot, judged.accepted, {k: s.value for k, s in sharp.items()})
     if task.thresholds:
         progress("thresholds")
-        fitted = rms_where(_left(weighed, plain(weighed, kept)[0]), joint_moves(weighed))
+        fitted = rms_where(_left(weighed, whole), joint_moves(weighed))
         inflate = np.maximum(1.0, proof.after / np.maximum(fitted, 1e-12))
         touched = [e.span for e in found] + list(load.intervals if load else ())
         model = with_thresholds(model, [recordings[r] for r in which], inflate, touched)

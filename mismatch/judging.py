@@ -32,8 +32,11 @@ RIGID = (
 RIGID_SHADOW = 0.01
 #: One body that explains this share of what all base parameters together do has that name.
 ONE_BODY = 0.9
-#: Levels that a change with temperature looks like where nothing warms.
-_WITHOUT_HEAT = ("coulomb_friction", "viscous_friction")
+#: Names that come before one which they cannot be told apart from.
+_FIRST = {
+    "link_inertial": ("payload",),
+    "temperature_dependent_friction": ("coulomb_friction", "viscous_friction"),
+}
 #: Findings and failed attempts at most.
 MOST, TRIES = 6, 10
 #: Without a reference: fitted anyway, or only a matter of which masses are believed.
@@ -130,14 +133,9 @@ def likelier(order: Sequence[Scored]) -> Scored:
     if best.candidate.effect == "base_free":
         bodies = [s for s in order if s.candidate.effect in ("payload", "link_inertial")]
         best = next((s for s in bodies if s.evidence > ONE_BODY * best.evidence), best)
-    if best.candidate.effect == "link_inertial":
-        loads = [s for s in order if s.candidate.effect == "payload" and not told_apart(best, s)]
-        return loads[0] if loads else best
-    if best.candidate.effect == "temperature_dependent_friction":
-        here = [s for s in order if s.candidate.joint == best.candidate.joint]
-        cold = [s for s in here if s.candidate.effect in _WITHOUT_HEAT and not told_apart(best, s)]
-        return cold[0] if cold else best
-    return best
+    first = _FIRST.get(best.candidate.effect, ())
+    here = (s for s in order if s.candidate.joint in (None, best.candidate.joint))
+    return next((s for s in here if s.candidate.effect in first and not told_apart(best, s)), best)
 
 
 def told_apart(best: Scored, other: Scored) -> bool:

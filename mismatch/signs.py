@@ -1,4 +1,4 @@
-"""The terms' smooth sign and its slope along samples, in NumPy."""
+"""The terms' smooth sign along samples, in NumPy."""
 
 from collections.abc import Callable
 from functools import cache
@@ -14,19 +14,14 @@ Array = NDArray[np.float64]
 
 def sign(x: Array, width: float) -> Array:
     """Return the smooth sign of samples (any shape), one half at `width`, which has their unit."""
-    return np.asarray(_compiled(0)(x, width), np.float64)
-
-
-def slope(x: Array, width: float) -> Array:
-    """Return the smooth sign's derivative by x, of x's shape, in 1 over its unit."""
-    return np.asarray(_compiled(1)(x, width), np.float64)
+    return np.asarray(_compiled()(x, width), np.float64)
 
 
 @cache
-def _compiled(order: int) -> Callable[[Array, float], Array]:
-    """Return the smooth sign's derivative of an order; simplified, so that nothing cancels far from zero."""
+def _compiled() -> Callable[[Array, float], Array]:
+    """Return the smooth sign in NumPy."""
     x, width = sp.Symbol("x", real=True), sp.Symbol("width", positive=True)
     found: Callable[[Array, float], Array] = sp.lambdify(
-        (x, width), sp.simplify(smooth_sign(x, width).diff(x, order)), "numpy"
+        (x, width), sp.simplify(smooth_sign(x, width)), "numpy"
     )
     return found
