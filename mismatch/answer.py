@@ -188,10 +188,15 @@ def _carried_share(p: Parts, j: int) -> float:
 
 
 def _contact(p: Parts) -> list[dict[str, Any]]:
-    """Episodes that one force explains on several joints are forces from outside, however short they are."""
-    if p.contact is None or _squares(p) < _PUSH:
+    """Episodes that a force explains on several joints are forces from outside, however short they are.
+
+    But not where a gear has slack: its blows shake the whole arm.
+    """
+    slack = any(a.score.candidate.effect == "backlash" for a in p.judged.accepted)
+    if p.contact is None or slack or _squares(p) < _PUSH:
         return []
-    joints = [j + 1 for j in involved(p.episodes)]
+    pushes = p.contact.pushes
+    joints = [j + 1 for j in involved(pushes)]
     return [
         {
             "effect": "external_contact",
@@ -199,10 +204,10 @@ def _contact(p: Parts) -> list[dict[str, Any]]:
             "indistinguishable_from": [],
             "confidence": 0.9,
             "parameters": {"force": quantity(p.contact.force, None, "N")}
-            | {f"torque_{j}": quantity(_strongest(p, j - 1), None, "Nm") for j in joints},
+            | {f"torque_{j}": quantity(_strongest(pushes, j - 1), None, "Nm") for j in joints},
             "equation": EFFECTS["external_contact"].equation,
-            "share": {str(j): round(_episode_share(p, j - 1), 3) for j in joints},
-            "intervals": [[round(x, 3) for x in e.span] for e in p.episodes],
+            "share": {str(j): round(_episode_share(p, pushes, j - 1), 3) for j in joints},
+            "intervals": [[round(x, 3) for x in e.span] for e in pushes],
             "next_motion": None,
         }
     ]
@@ -216,16 +221,15 @@ def _strength(p: Parts, a: Accepted) -> float:
 
 def _squares(p: Parts) -> float:
     """Evidence of the episodes, nats: half their squared residuals over the noise, memory taken off."""
-    worth = [float(e.strength.sum()) * (e.rows.stop - e.rows.start) for e in p.episodes]
-    return 0.5 * float(sum(worth)) / float(np.mean(p.evidence.scales.inflation))
+    return 0.5 * sum(e.worth for e in p.episodes) / float(np.mean(p.evidence.scales.inflation))
 
 
-def _strongest(p: Parts, j: int) -> float:
-    return float(max((e.mean[j] for e in p.episodes), key=abs))
+def _strongest(episodes: Sequence[Episode], j: int) -> float:
+    return float(max((e.mean[j] for e in episodes), key=abs))
 
 
-def _episode_share(p: Parts, j: int) -> float:
-    inside = sum(float(e.rms[j] ** 2) * (e.rows.stop - e.rows.start) for e in p.episodes)
+def _episode_share(p: Parts, episodes: Sequence[Episode], j: int) -> float:
+    inside = sum(float(e.rms[j] ** 2) * (e.rows.stop - e.rows.start) for e in episodes)
     total = sum(float((x[:, j] ** 2).sum()) for x in p.left)
     return float(min(inside / max(total, 1e-12), 1.0))
 
@@ -235,7 +239,7 @@ def _strange(p: Parts, contact: bool) -> list[dict[str, Any]]:
     shares = {u.joint: u.share for u in p.unknowns}
     if p.episodes and not contact:
         for j in involved(p.episodes):
-            if (share := _episode_share(p, j)) > _EPISODE_SHARE:
+            if (share := _episode_share(p, p.episodes, j)) > _EPISODE_SHARE:
                 shares[j] = max(shares.get(j, 0.0), share)
     spans = [] if contact else [[round(x, 3) for x in e.span] for e in p.episodes]
     found = []

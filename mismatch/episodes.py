@@ -24,9 +24,11 @@ PAUSE, SHORTEST = 0.6, 0.15
 #: Share of the time that episodes may take: what is always there does not come and go.
 MOST = 0.3
 #: Share of the joints' squared residuals that one force must explain; N.
-FORCE, STRONGEST, WEAKEST = 0.8, 500.0, 3.0
+FORCE, STRONGEST, WEAKEST = 0.8, 500.0, 1.0
 #: Mean squared residual over noise of a joint that a force reaches.
 LOUD = 10.0
+#: Share of what comes and goes that pushes make, and those of them that reach two joints loudly.
+NEARLY, HALF = 0.8, 0.5
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,11 @@ class Episode:
     strength: Array
     mean: Array  # (N,) mean residual, Nm
     rms: Array  # (N,)
+
+    @property
+    def worth(self) -> float:
+        """Squared residuals over the noise, summed."""
+        return float(self.strength.sum() * (self.rows.stop - self.rows.start))
 
 
 def episodes(
@@ -96,36 +103,44 @@ def involved(found: Sequence[Episode], part: float = 0.08) -> list[int]:
 
 @dataclass(frozen=True)
 class Contact:
-    """One force at a frame's origin that explains all joints: share of their squared residuals; N at most."""
+    """Episodes that a force explains on all joints, and the strongest one's force, N."""
 
-    frame: int
-    share: float
+    pushes: tuple[Episode, ...]
     force: float
 
 
 def contact(
     found: Sequence[Episode], runs: Sequence[Rows], left: Mapping[int, Array], physics: Physics, sigma: Array
 ) -> Contact | None:
-    """Return the force that explains the episodes, or None where no single force does.
+    """Return the pushes among the episodes, or None where they are not nearly all of what comes and goes.
 
-    left: residuals (n, N) by run; sigma (N,) Nm: noise of the joints. A force has three components and the
-    joints are six, so that what is no force leaves most of itself.
+    At least half of it has to reach two joints loudly: one joint alone is no push.
+
+    left: residuals (n, N) by run; sigma (N,) Nm: noise of the joints. Each push has a link of its own. A
+    force has three components and the joints are six, so that what is no force leaves most of itself.
     """
-    if len(involved(found)) < 2 or np.median([np.sum(e.strength > LOUD) for e in found]) < 2:
-        return None
-    best: Contact | None = None
-    for frame in range(3, physics.dof + 1):
-        rest, whole, most = 0.0, 0.0, 0.0
-        for e in found:
-            columns = forces(physics, runs[e.run].q[e.rows], frame) / sigma[:, None]  # (n, N, 3)
-            target = left[e.run][e.rows] / sigma
-            # a weak prior of 1 kN keeps directions that no joint feels at zero
-            gram = np.einsum("tji,tjk->tik", columns, columns) + 1e-6 * np.eye(3)
-            force = np.linalg.solve(gram, np.einsum("tji,tj->ti", columns, target)[:, :, None])[:, :, 0]
-            rest += float(np.sum((target - np.einsum("tji,ti->tj", columns, force)) ** 2))
-            whole += float(np.sum(target**2))
-            most = max(most, float(np.median(np.linalg.norm(force, axis=1))))
-        share = 1 - rest / max(whole, 1e-12)
-        if best is None or share > best.share:
-            best = Contact(frame, share, most)
-    return best if best is not None and best.share > FORCE and WEAKEST < best.force < STRONGEST else None
+    pushes, strong, most = list[Episode](), 0.0, 0.0
+    for e in found:
+        share, force = max(
+            _force(physics, runs[e.run].q[e.rows], left[e.run][e.rows], sigma, frame)
+            for frame in range(3, physics.dof + 1)
+        )
+        if share > FORCE and WEAKEST < force < STRONGEST:
+            pushes.append(e)
+            most = max(most, force)
+            strong += e.worth if np.sum(e.strength > LOUD) >= 2 else 0.0
+    total = sum(e.worth for e in found)
+    nearly = sum(e.worth for e in pushes) > NEARLY * total and strong > HALF * total
+    return Contact(tuple(pushes), most) if nearly else None
+
+
+def _force(physics: Physics, q: Array, left: Array, sigma: Array, frame: int) -> tuple[float, float]:
+    """Return the share of residuals (n, N) that a force at a frame's origin explains, and its size, N."""
+    columns = forces(physics, q, frame) / sigma[:, None]  # (n, N, 3)
+    target = left / sigma
+    # a weak prior of 1 kN keeps directions that no joint feels at zero
+    gram = np.einsum("tji,tjk->tik", columns, columns) + 1e-6 * np.eye(3)
+    force = np.linalg.solve(gram, np.einsum("tji,tj->ti", columns, target)[:, :, None])[:, :, 0]
+    rest = float(np.sum((target - np.einsum("tji,ti->tj", columns, force)) ** 2))
+    share = 1 - rest / max(float(np.sum(target**2)), 1e-12)
+    return share, float(np.median(np.linalg.norm(force, axis=1)))
