@@ -69,6 +69,14 @@ def test_a_load_that_comes_and_goes_is_found_with_its_times_and_its_mass(arm, he
     assert np.abs(torque[~within(rows.time, [(a - 0.5, b + 0.5) for a, b in SPANS])]).max() == 0.0
 
 
+def test_a_short_stretch_of_something_lighter_is_not_of_the_load(healthy) -> None:
+    (rows,) = healthy.runs
+    long, short = within(rows.time, [(20.0, 28.0)]), within(rows.time, [(9.0, 10.4)])
+    found = carried(with_torque(healthy, held_load(healthy, long) + held_load(healthy, short, 0.55 * LOAD)))
+    assert found is not None
+    assert np.ravel(found.intervals) == pytest.approx([20.0, 28.0], abs=0.1)
+
+
 def test_without_its_load_the_arm_is_healthy_again(healthy) -> None:
     (rows,) = healthy.runs
     loaded = with_torque(healthy, held_load(healthy, within(rows.time)))
