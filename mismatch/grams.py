@@ -66,15 +66,20 @@ def weights(rows: Rows, scales: Scales) -> Array:
     which = regime(rows)
     found = np.empty(which.shape)
     for j in range(which.shape[1]):
-        alike = _alike(which[:, j] == 2, scales.inflation[j])
+        alike = _alike(which[:, j], scales.inflation[j])
         found[:, j] = 1 / (scales.sigma[j][which[:, j]] ** 2 * alike)
     return found
 
 
-def _alike(rest: NDArray[np.bool_], inflation: float) -> Array:
-    """Rows that tell the same as a row: in motion the memory, at rest the whole rest (static friction)."""
-    found = np.full(len(rest), inflation)
-    for part in stretches(rest):
+def _alike(which: Indices, inflation: float) -> Array:
+    """Rows that tell the same as a row: in motion the memory, but no more than a passage through zero has.
+
+    At rest the whole rest (static friction).
+    """
+    found = np.full(len(which), inflation)
+    for part in stretches(which == 1):
+        found[part] = min(inflation, part.stop - part.start)
+    for part in stretches(which == 2):
         found[part] = part.stop - part.start
     return found
 

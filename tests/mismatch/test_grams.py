@@ -62,6 +62,17 @@ def test_a_rest_counts_once_however_long_it_is() -> None:
     np.testing.assert_allclose(found[:50], 1 / (0.5**2 * 4.0))
 
 
+def test_a_passage_through_zero_counts_once_however_long_the_memory() -> None:
+    sliding = np.ones((400, 1))
+    for start in (60, 200, 300):
+        sliding[start : start + 5] = 0.5
+    scales = Scales(np.array([[0.5, 1.0, 2.0]]), np.array([20.0]), np.array([np.inf]))
+    found = weights(rows(400, 1, sliding=sliding), scales)[:, 0]
+    assert found[200:205].sum() == pytest.approx(1 / 1.0**2)
+    short = Scales(scales.sigma, np.array([2.0]), scales.fast)
+    assert weights(rows(400, 1, sliding=sliding), short)[200:205, 0].sum() == pytest.approx(5 / 2)
+
+
 def test_blocks_cover_every_row_once_and_keep_sides_apart() -> None:
     runs, sides = [rows(n) for n in (3000, 1900, 40, 2500)], [True, True, True, False]
     for side in (True, False):
