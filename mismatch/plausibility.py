@@ -21,6 +21,8 @@ _PART_CHANGED = 0.1
 _WHOLE, _AHEAD = 0.8, 1.7
 #: What slack does follows from its width: the size of its column is one, or at least this.
 _LEAST_GAP = 0.3
+#: Nm/rad; a third of the catalogue's softest gear.
+SOFTEST = 1e3
 
 
 def implausible(evidence: Evidence, test: Scored) -> str:
@@ -28,6 +30,8 @@ def implausible(evidence: Evidence, test: Scored) -> str:
     c = test.candidate
     if c.effect == "backlash" and not _LEAST_GAP < (times := float(test.size.sum())) < 1 / _LEAST_GAP:
         return f"moves the arm {times:.2g} times as much as such a gap does"
+    if c.effect == "joint_elasticity" and test.size[0] * SOFTEST > 1:
+        return f"a stiffness of {1 / test.size[0]:.0f} Nm/rad is no gear's"
     if c.effect in AT_REVERSALS and c.joint is not None:
         level = evidence.setup.friction[c.joint, 0]
         least = _PART_WITHIN if is_short(c) else AT_REVERSALS[c.effect]

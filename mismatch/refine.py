@@ -206,17 +206,18 @@ def _shared_terms(
         for j in range(space.dof):
             yield "delay", j, {"d": (full[at], std[at])}
     if c.effect == "joint_elasticity" and c.joint is not None:
-        at, inertia = space.common_index(f"elasticity{c.joint + 1}"), _own_inertia(evidence, c.joint)
+        at, inertia = space.common_index(f"elasticity{c.joint + 1}"), _geared_inertia(evidence, c.joint)
         yield "elasticity", c.joint, {"c": (-inertia * full[at], inertia * std[at])}
 
 
-def _own_inertia(evidence: Evidence, joint: int) -> float:
-    """Mean M_jj (kg m^2) over the observed poses: momentum of joint j at unit speed of joint j."""
+def _geared_inertia(evidence: Evidence, joint: int) -> float:
+    """Mean M_jj (kg m^2) without the rotor over the observed poses: joint j's momentum at its unit speed."""
     q = np.concatenate([r.q for r in evidence.runs if len(r)])[::50]
     unit = np.zeros_like(q)
     unit[:, joint] = 1.0
     setup = evidence.setup
-    return float(setup.physics.regressor.combined("momentum", setup.base, q=q, qd=unit)[:, joint].mean())
+    links = setup.base - setup.physics.rotors
+    return float(setup.physics.regressor.combined("momentum", links, q=q, qd=unit)[:, joint].mean())
 
 
 def _geometry(model: Model, robot: Robot, accepted: Sequence[Accepted]) -> Model:

@@ -146,3 +146,11 @@ def test_freed_base_parameters_are_no_name_where_one_body_does_as_much() -> None
     most, some = (scored([30.0, 40.0], evidence=e, candidate=load) for e in (95.0, 70.0))
     assert likelier([best, most]) is most
     assert likelier([best, some]) is best
+
+
+@pytest.mark.parametrize(("stiffness", "believed"), [(8e3, True), (1.5e3, True), (300.0, False)])
+def test_no_gear_is_softer_than_a_gear(stiffness, believed) -> None:
+    soft = Candidate("joint_elasticity", 0, (0,), positive=True)
+    test = Scored(soft, np.ones(4), 50.0, np.array([1 / stiffness]), np.ones(1))
+    evidence = SimpleNamespace(setup=SimpleNamespace(friction=np.ones((1, 2))), has_reference=True)
+    assert (implausible(evidence, test) == "") == believed
