@@ -28,12 +28,16 @@ def joint_elasticity(scene: Scene) -> Drawn:
 
 
 def backlash(scene: Scene) -> Drawn:
-    """Draw a dead zone; its size is half its width in rad."""
+    """Draw a dead zone; its size is half its width in rad.
+
+    The gear winds up behind the gap, so that its elasticity is there as well.
+    """
     joint, stiffness = scene.joint(), float(scene.rng.uniform(1.0e4, 3.0e4))
     return Drawn(
         "backlash", (joint,), 1.0e-3, 5.0e-5, 1.0e-2,
         lambda gap, _k: {"backlash": (Backlash(joint=joint, gap=gap, stiffness=stiffness),)},
         lambda gap: {"gap": gap, "stiffness": stiffness},
+        notes={"also": ["joint_elasticity"]},
     )  # fmt: skip
 
 

@@ -109,8 +109,10 @@ def _is_right(finding: dict[str, Any], hidden: list[dict[str, Any]]) -> bool:
 
 
 def _in_class(finding: dict[str, Any], hidden: list[dict[str, Any]]) -> bool:
+    """Return whether a finding could not be told from what is hidden, or is what comes along with it."""
     names = {family(name) for name in finding.get("indistinguishable_from", [])}
-    return bool(names & {family(e["effect"]) for e in hidden})
+    along = {family(name) for e in hidden for name in e.get("also", [])}
+    return bool(names & {family(e["effect"]) for e in hidden}) or family(finding["effect"]) in along
 
 
 def _match(finding: dict[str, Any], hidden: list[dict[str, Any]]) -> dict[str, Any] | None:

@@ -50,7 +50,8 @@ class Drawn:
     """An effect whose size is one number between low and high.
 
     joints: 1..N that it sits on, empty for one that moves all. build: (size, recording 0..) -> fields of a
-    Plant to add. truth: size -> the parameters by name. episodic: it acts in some intervals only.
+    Plant to add. truth: size -> the parameters by name. episodic: it acts in some intervals only. notes: what
+    the truth holds besides; also: effects that come along with it.
     """
 
     name: str

@@ -57,6 +57,13 @@ def test_outcomes_of_one_hidden_effect(found, outcome, wrong) -> None:
     assert (verdict.outcome, verdict.wrong) == (outcome, wrong)
 
 
+def test_what_comes_along_with_the_hidden_effect_is_neither_wrong_nor_right() -> None:
+    slack = effect("backlash") | {"also": ["joint_elasticity"]}
+    verdict = judge(truth(slack), answer(finding("joint_elasticity")))
+    assert (verdict.outcome, verdict.wrong) == ("right_in_class", False)
+    assert judge(truth(slack), answer(finding())).wrong
+
+
 def test_an_offset_and_an_asymmetry_are_one_family() -> None:
     assert family("current_offset") == family("friction_asymmetry") != family("stribeck")
     verdict = judge(
