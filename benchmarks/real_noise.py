@@ -5,9 +5,10 @@ python benchmarks/real_noise.py RECORDINGS/unloaded_*.csv [--robot ur10e] [--rep
 What the recordings lack by themselves is found first and taken off (masses and ripple stay in the model).
 Then one effect at a time is added to the filtered torque of every run, with nonlinear values that stand on
 no grid. Its size is the rms of what base parameters, offset, Coulomb and viscous friction leave of it
-(--whole: of all of it) over the residual's rms.
+(--whole: of all of it) over the residual's rms, both where the joint moves.
 Right: the first new name is of the effect's family, on its joint where it has one. Payloads, links and rotors
-are not among them: without a reference the base parameters of this arm are free, and hold them.
+are not among them: without a reference the base parameters of this arm are free, and hold them; nor are
+asymmetries of friction, which in motion are offsets.
 """
 
 import argparse
@@ -20,11 +21,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from residuum.mismatch.candidates import Candidate
 from residuum.mismatch.columns import WIDTH, Column, space_of
 from residuum.mismatch.evidence import Evidence, gather, renewed, residual
 from residuum.mismatch.judging import Judged, judge
 from residuum.mismatch.naming import chosen, nuisance, reweighed
-from residuum.mismatch.proof import rms_where
+from residuum.mismatch.proof import joint_moves, rms_where
 from residuum.mismatch.refit import parameters
 from residuum.mismatch.rows import make_rows
 from residuum.recordings import Recording, read
@@ -39,11 +41,12 @@ Added = tuple[Array, ...]  # (n, N) Nm by run
 SIZES = (0.10, 0.20, 0.35, 0.50)
 #: facts of the crude baseline: plain leave-one-run-out on such logs, 16 effects.
 CRUDE = {0.10: (25, 11), 0.20: (62, 12), 0.35: (90, 5), 0.50: (99, 1)}
-FAMILY = {"current_offset": "constant", "friction_asymmetry": "constant"}
+
+#: Nm; what moves no more than this is not there.
+NOTHING = 1e-9
 
 #: effect -> term, parameter, values off every grid.
 OWN = {
-    "friction_asymmetry": ("asymmetric", "Fa", ()),
     "cable_spring": ("spring", "k", ()),
     "stribeck": ("stribeck", "Fs", (("vs", 0.12),)),
     "nonlinear_viscous (quadratic)": ("quadratic", "F2", ()),
@@ -70,8 +73,7 @@ class Case:
     @property
     def family(self) -> str:
         """What a right answer is called."""
-        effect = self.name.partition(" ")[0]
-        return FAMILY.get(effect, effect)
+        return self.name.partition(" ")[0]
 
 
 def columns_of(recordings: Sequence[Recording], evidence: Evidence) -> dict[str, list[Array]]:
@@ -100,24 +102,38 @@ def cases(
     seed: int,
     whole: bool,
 ) -> list[Case]:
-    """Draw every effect at every size, on a joint at random; whole: sizes are those of all of it."""
+    """Draw every effect at every size, on joints at random; whole: sizes are those of all of it."""
     rng, found = np.random.default_rng(seed), []
     noise = _rms(left, evidence)
     see = (lambda x: x) if whole else _Visible(evidence).of
+    shared = {name: _seen(evidence, name) for name in SHARED}
     for size in SIZES:
-        for _ in range(repeats):
-            for name, by_run in columns.items():
-                j = int(rng.integers(evidence.setup.space.dof))
+        for name, by_run in columns.items():
+            for j in rng.permutation(evidence.setup.space.dof)[:repeats]:
                 only = [np.where(np.arange(x.shape[1]) == j, x, 0.0) for x in by_run]
-                found.append(_scaled(name, j, size, only, see(only), noise, evidence))
-            for name in SHARED:
-                some = [c for c in evidence.found.each if c.effect == name]
-                c = some[int(rng.integers(len(some)))]
-                vector = evidence.found.directions.vectors[:, list(c.columns)].toarray()
-                mix = vector @ (np.abs(rng.standard_normal(len(c.columns))) + 0.2)
-                torque = _torques(evidence, mix)
+                found.append(_scaled(name, int(j), size, only, see(only), noise, evidence))
+        for name, some in shared.items():
+            order = rng.permutation(len(some))
+            for k in range(repeats):
+                c = some[order[k % len(some)]]
+                torque = _torques(evidence, _mixed(evidence, c, rng))
                 found.append(_scaled(name, c.joint, size, torque, see(torque), noise, evidence))
     return found
+
+
+def _seen(evidence: Evidence, effect: str) -> list[Candidate]:
+    """Return an effect's candidates that do anything here: an offset of the base joint's encoder does not."""
+    some = [c for c in evidence.found.each if c.effect == effect]
+    torques = ([np.abs(x).max() for x in _torques(evidence, _mixed(evidence, c))] for c in some)
+    return [c for c, torque in zip(some, torques, strict=True) if max(torque) > NOTHING]
+
+
+def _mixed(evidence: Evidence, c: Candidate, rng: np.random.Generator | None = None) -> Array:
+    """Return an effect's parameters: its directions at random, or those of a clock, which move all alike."""
+    vectors = evidence.found.directions.vectors[:, list(c.columns)].toarray()
+    if rng is None or c.effect == "time_delay":
+        return np.asarray(vectors.sum(axis=1))
+    return np.asarray(vectors @ (np.abs(rng.standard_normal(len(c.columns))) + 0.2))
 
 
 def _torques(evidence: Evidence, vector: Array) -> list[Array]:
@@ -129,17 +145,17 @@ def _torques(evidence: Evidence, vector: Array) -> list[Array]:
 
 
 def _rms(values: Sequence[Array], evidence: Evidence) -> Array:
-    return rms_where(values, np.concatenate([r.arm_moves for r in evidence.runs])[:, None])
+    return rms_where(values, joint_moves(evidence))
 
 
 class _Visible:
-    """What a baseline of free base parameters, offset, Coulomb and viscous friction leaves of a torque."""
+    """What a baseline of free base parameters, offset, Coulomb and viscous friction leaves where joints move."""
 
     def __init__(self, evidence: Evidence) -> None:
-        self.bases = []
+        self.moving, self.bases = joint_moves(evidence), []
         for j in range(evidence.setup.space.dof):
             columns = np.concatenate([r.columns[j][:, self._plain(evidence, j)] for r in evidence.runs])
-            self.bases.append(np.linalg.svd(columns, full_matrices=False)[0])
+            self.bases.append(np.linalg.svd(columns[self.moving[:, j]], full_matrices=False)[0])
 
     @staticmethod
     def _plain(evidence: Evidence, j: int) -> list[int]:
@@ -151,7 +167,8 @@ class _Visible:
     def of(self, torque: Sequence[Array]) -> list[Array]:
         whole = np.concatenate(torque)
         for j, basis in enumerate(self.bases):
-            whole[:, j] -= basis @ (basis.T @ whole[:, j])
+            moving = self.moving[:, j]
+            whole[moving, j] -= basis @ (basis.T @ whole[moving, j])
         return np.split(whole, np.cumsum([len(x) for x in torque])[:-1])
 
 
@@ -178,7 +195,7 @@ def answer(evidence: Evidence, known: Judged, case: Case) -> tuple[str, bool]:
     if not found:
         return "", True
     c = found[0].score.candidate
-    return FAMILY.get(c.effect, c.effect), c.joint == case.joint or case.joint is None
+    return c.effect, c.joint == case.joint or case.joint is None
 
 
 def everything(evidence: Evidence, known: Judged | None = None) -> Judged:
