@@ -19,7 +19,7 @@ from .naming import nuisance
 from .quantities import payload_columns
 from .refit import observed_runs
 from .rows import Rows
-from .segments import WINDOWS, Mask, first_guess, joined, segmented, stretches, sums_of, two_levels
+from .segments import WINDOWS, Mask, first_guesses, joined, segmented, stretches, sums_of, two_levels
 from .selection import Directions
 
 Array = NDArray[np.float64]
@@ -36,8 +36,8 @@ _BLUR = 0.2
 _CHANGE = 1e-3
 #: s; a stretch or a pause counts from here.
 _SHORTEST = 1.0
-#: Nats of the first guess.
-GUESS = 10.0
+#: Nats of a first guess, and how many are followed up.
+GUESS, _GUESSES = 10.0, 3
 #: Its mass with the plain arm over that with the arm of every hypothesis.
 SAME = (0.5, 2.0)
 
@@ -61,7 +61,7 @@ class Carried:
 def carried(evidence: Evidence) -> Carried | None:
     """Return the load that the observed recordings show in some stretches of time only, or None.
 
-    The first guess is that of the plain arm, and then that of the arm with every hypothesis: what is wrong
+    First guesses are those of the plain arm, and then those of the arm with every hypothesis: what is wrong
     all the time may hide the load from the one, and the other may take the load for its own.
     """
     runs = tuple(
@@ -71,15 +71,16 @@ def carried(evidence: Evidence) -> Carried | None:
     plain = nuisance(evidence)
     rich = plain + evidence.found.directions
     for k, start in enumerate((plain, rich)):
-        first = _first(evidence, start, runs)
-        if first is not None:
+        guesses = _guesses(evidence, start, runs)
+        if not guesses and k == 0:
+            return None
+        for first in guesses:
             found = _settled(first, start)
-            if LEAST / 2 < found.share < 1 - LEAST / 2:
-                found = _of_one_load(_settled(found, rich), rich)
+            if not LEAST / 2 < found.share < 1 - LEAST / 2 or found.fit.evidence(TEN) < GUESS:
+                continue
+            found = _of_one_load(_settled(found, rich), rich)
             if not objection(found) and _same(found, plain):
                 return _answer(found)
-        elif k == 0:
-            return None
     return None
 
 
@@ -132,8 +133,8 @@ def _blurred(found: Held) -> list[Array]:
     return taken
 
 
-def _first(evidence: Evidence, arm: Directions, runs: tuple[LoadedRun, ...]) -> Held | None:
-    """Return the load in the one stretch that it explains best, or None where that is nothing.
+def _guesses(evidence: Evidence, arm: Directions, runs: tuple[LoadedRun, ...]) -> list[Held]:
+    """Return the load in the stretches that it explains best, each alone; none where that is nothing.
 
     Noise is what the residual does within a window: all else may be the load.
     """
@@ -148,12 +149,15 @@ def _first(evidence: Evidence, arm: Directions, runs: tuple[LoadedRun, ...]) -> 
         sums_of(x.columns, _alike(x.rows, scales), e, round(window / x.rows.step))
         for x, e in zip(runs, left, strict=True)
     ]
-    run, part, nats = first_guess(sums, WIDTHS)
-    if nats < GUESS or sum(len(s.rows) for s in sums) < 2:
-        return None
-    none[run][part] = True
-    anew = weighed(evidence, scales)
-    return Held(anew, runs, none, fitted(anew, arm, runs, none))
+    if sum(len(s.rows) for s in sums) < 2:
+        return []
+    anew, found = weighed(evidence, scales), []
+    for run, part, nats in first_guesses(sums, WIDTHS, _GUESSES):
+        if nats > GUESS:
+            held = tuple(h.copy() for h in none)
+            held[run][part] = True
+            found.append(Held(anew, runs, held, fitted(anew, arm, runs, held)))
+    return found
 
 
 def _settled(found: Held, arm: Directions) -> Held:

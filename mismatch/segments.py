@@ -39,12 +39,13 @@ def sums_of(columns: Array, weight: Array, target: Array, width: int) -> Sums:
     )
 
 
-def first_guess(runs: Sequence[Sums], std: Array) -> tuple[int, slice, float]:
-    """Return the run and its rows in which parameters of prior width std (k,) explain most, and the nats.
+def first_guesses(runs: Sequence[Sums], std: Array, most: int) -> list[tuple[int, slice, float]]:
+    """Return runs, rows and nats of stretches in which parameters of prior width std (k,) explain most.
 
-    Every stretch of whole windows of a run is tried; nats are of the log marginal likelihood.
+    Every stretch of whole windows of a run is tried; nats are of the log marginal likelihood. Best first, and
+    none overlaps a better one.
     """
-    best, found = -np.inf, (0, slice(0, 0))
+    each = list[tuple[float, int, slice]]()
     for r, sums in enumerate(runs):
         count, k = sums.right.shape
         first, last = np.triu_indices(count)
@@ -54,11 +55,17 @@ def first_guess(runs: Sequence[Sums], std: Array) -> tuple[int, slice, float]:
         b = (so_far[last + 1] - so_far[first]) * std
         gain = np.einsum("ik,ik->i", b, np.linalg.solve(a, b[:, :, None])[:, :, 0])
         evidence = 0.5 * gain - 0.5 * np.linalg.slogdet(a)[1]
-        if len(evidence) and evidence.max() > best:
-            top = int(evidence.argmax())
-            best = float(evidence[top])
-            found = r, slice(sums.rows[first[top]].start, sums.rows[last[top]].stop)
-    return *found, best
+        spans = zip(first.tolist(), last.tolist(), strict=True)
+        each += [
+            (nats, r, slice(sums.rows[i].start, sums.rows[j].stop))
+            for nats, (i, j) in zip(evidence.tolist(), spans, strict=True)
+        ]
+    found = list[tuple[int, slice, float]]()
+    for nats, r, part in sorted(each, key=lambda x: -x[0]):
+        apart = all(r != run or part.stop <= p.start or part.start >= p.stop for run, p, _ in found)
+        if apart and len(found) < most:
+            found.append((r, part, nats))
+    return found
 
 
 def segmented(gain: Array, switch: float = SWITCH) -> Mask:

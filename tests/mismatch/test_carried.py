@@ -10,7 +10,7 @@ from residuum.mismatch.evidence import Evidence, gather, renewed
 from residuum.mismatch.explain import Task, explain
 from residuum.mismatch.physics import forces
 from residuum.mismatch.quantities import payload_directions, payload_numbers
-from residuum.mismatch.segments import first_guess, joined, segmented, stretches, sums_of, two_levels
+from residuum.mismatch.segments import first_guesses, joined, segmented, stretches, sums_of, two_levels
 from residuum.robots import load_robot
 from residuum.virtual import Plant, simulate
 from residuum.virtual import effects as e
@@ -145,16 +145,17 @@ def test_short_pauses_are_closed_and_short_stretches_dropped() -> None:
     assert stretches(joined(~np.zeros(5, bool), 10)) == []
 
 
-def test_the_first_guess_is_the_stretch_that_explains_most() -> None:
+def test_first_guesses_are_the_stretches_that_explain_most() -> None:
     rng = np.random.default_rng(4)
     columns, target = rng.standard_normal((1000, 2, 3)), 0.5 * rng.standard_normal((1000, 2))
     target[400:600] += columns[400:600] @ np.array([1.0, -2.0, 0.5])
+    target[800:900] += columns[800:900] @ np.array([-1.0, 0.5, 0.5])
     sums = sums_of(columns, np.full((1000, 2), 4.0), target, 100)
-    run, part, nats = first_guess(
-        [sums, sums_of(columns[:50], np.ones((50, 2)), 0 * target[:50], 100)], np.ones(3)
-    )
-    assert (run, part) == (0, slice(400, 600))
-    assert nats > 1000
+    still = sums_of(columns[:50], np.ones((50, 2)), 0 * target[:50], 100)
+    first, second, third = first_guesses([sums, still], np.ones(3), 3)
+    assert first[:2] == (0, slice(400, 600))
+    assert second[:2] == (0, slice(800, 900))
+    assert first[2] > second[2] > 100 > third[2]
 
 
 def test_two_levels_are_weighted_means_of_two_classes() -> None:

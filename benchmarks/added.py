@@ -1,0 +1,163 @@
+"""Known effects that are added to the torques of real recordings, at sizes that a plain model leaves visible."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from residuum.mismatch.candidates import Candidate
+from residuum.mismatch.columns import WIDTH, Column, space_of
+from residuum.mismatch.evidence import Evidence
+from residuum.mismatch.proof import joint_moves, rms_where
+from residuum.mismatch.rows import make_rows
+from residuum.recordings import Recording
+from residuum.symbolic.terms import CATALOGUE
+
+Array = NDArray[np.float64]
+Added = tuple[Array, ...]  # (n, N) Nm by run
+
+#: Rms of what an effect leaves visible over the residual's.
+SIZES = (0.10, 0.20, 0.35, 0.50)
+#: Nm; what moves no more than this is not there.
+NOTHING = 1e-9
+
+#: effect -> term, parameter, values off every grid.
+OWN = {
+    "cable_spring": ("spring", "k", ()),
+    "stribeck": ("stribeck", "Fs", (("vs", 0.12),)),
+    "nonlinear_viscous (quadratic)": ("quadratic", "F2", ()),
+    "nonlinear_viscous (cubic)": ("cubic", "F3", ()),
+    "nonlinear_viscous (power 0.4)": ("power", "Fp", (("n", 0.4),)),
+    "load_dependent_friction": ("load_dependent", "mu", ()),
+    "position_dependent_friction": ("position_dependent", "A", (("n", 1.0),)),
+    "presliding_hysteresis": ("presliding", "A", (("zs", 0.008),)),
+    "velocity_lag": ("lag", "A", (("lag", 0.009),)),
+}
+#: effect -> the candidate whose directions make it.
+SHARED = ("encoder_offset", "joint_elasticity", "base_tilt", "time_delay")
+
+
+@dataclass(frozen=True)
+class Case:
+    """An effect in the recordings. joint: 0-based, None for those that move all."""
+
+    name: str
+    joint: int | None
+    size: float
+    added: Added
+
+    @property
+    def family(self) -> str:
+        """What a right answer is called."""
+        return self.name.partition(" ")[0]
+
+
+def columns_of(recordings: Sequence[Recording], evidence: Evidence) -> dict[str, list[Array]]:
+    """Return each own effect's filtered column on all joints: effect -> (n, N) by run."""
+    own = tuple(Column(t, p, _with_width(t, v)) for t, p, v in OWN.values())
+    physics = evidence.setup.physics
+    setup = replace(evidence.setup, space=space_of(physics.regressor, own, ()), limits=None)
+    found: dict[str, list[Array]] = {name: [] for name in OWN}
+    for recording in recordings:
+        rows = make_rows(recording, setup)
+        for k, name in enumerate(OWN):
+            at = [len(setup.space.seen[j]) + k for j in range(physics.dof)]
+            found[name].append(np.stack([rows.columns[j][:, a] for j, a in enumerate(at)], axis=1))
+    return found
+
+
+def _with_width(term: str, values: tuple[tuple[str, float], ...]) -> tuple[tuple[str, float], ...]:
+    return (*values, ("width", WIDTH)) if "width" in CATALOGUE[term].parameters else values
+
+
+def cases(
+    evidence: Evidence,
+    columns: dict[str, list[Array]],
+    left: Sequence[Array],
+    repeats: int,
+    seed: int,
+    whole: bool,
+) -> list[Case]:
+    """Draw every effect at every size, on joints at random; whole: sizes are those of all of it."""
+    rng, found = np.random.default_rng(seed), []
+    noise = _rms(left, evidence)
+    see = (lambda x: x) if whole else _Visible(evidence).of
+    shared = {name: _seen(evidence, name) for name in SHARED}
+    for size in SIZES:
+        for name, by_run in columns.items():
+            for j in rng.permutation(evidence.setup.space.dof)[:repeats]:
+                only = [np.where(np.arange(x.shape[1]) == j, x, 0.0) for x in by_run]
+                found.append(_scaled(name, int(j), size, only, see(only), noise, evidence))
+        for name, some in shared.items():
+            order = rng.permutation(len(some))
+            for k in range(repeats):
+                c = some[order[k % len(some)]]
+                torque = torques(evidence, _mixed(evidence, c, rng))
+                found.append(_scaled(name, c.joint, size, torque, see(torque), noise, evidence))
+    return found
+
+
+def _seen(evidence: Evidence, effect: str) -> list[Candidate]:
+    """Return an effect's candidates that do anything here: an offset of the base joint's encoder does not."""
+    some = [c for c in evidence.found.each if c.effect == effect]
+    most = [max(np.abs(x).max() for x in torques(evidence, _mixed(evidence, c))) for c in some]
+    return [c for c, torque in zip(some, most, strict=True) if torque > NOTHING]
+
+
+def _mixed(evidence: Evidence, c: Candidate, rng: np.random.Generator | None = None) -> Array:
+    """Return an effect's parameters: its directions at random, or those of a clock, which move all alike."""
+    vectors = evidence.found.directions.vectors[:, list(c.columns)].toarray()
+    if rng is None or c.effect == "time_delay":
+        return np.asarray(vectors.sum(axis=1))
+    return np.asarray(vectors @ (np.abs(rng.standard_normal(len(c.columns))) + 0.2))
+
+
+def torques(evidence: Evidence, vector: Array) -> list[Array]:
+    space = evidence.setup.space
+    return [
+        np.stack([r.columns[j] @ vector[space.indices[j]] for j in range(space.dof)], axis=1)
+        for r in evidence.runs
+    ]
+
+
+def _rms(values: Sequence[Array], evidence: Evidence) -> Array:
+    return rms_where(values, joint_moves(evidence))
+
+
+class _Visible:
+    """What a baseline of free base parameters, offset, Coulomb and viscous friction leaves where joints move."""
+
+    def __init__(self, evidence: Evidence) -> None:
+        self.moving, self.bases = joint_moves(evidence), []
+        for j in range(evidence.setup.space.dof):
+            columns = np.concatenate([r.columns[j][:, self._plain(evidence, j)] for r in evidence.runs])
+            self.bases.append(np.linalg.svd(columns[self.moving[:, j]], full_matrices=False)[0])
+
+    @staticmethod
+    def _plain(evidence: Evidence, j: int) -> list[int]:
+        space = evidence.setup.space
+        start = len(space.seen[j])
+        own = [start + k for k, c in enumerate(space.own) if c.usual or c.term == "offset"]
+        return [*range(start), *own]
+
+    def of(self, torque: Sequence[Array]) -> list[Array]:
+        whole = np.concatenate(torque)
+        for j, basis in enumerate(self.bases):
+            moving = self.moving[:, j]
+            whole[moving, j] -= basis @ (basis.T @ whole[moving, j])
+        return np.split(whole, np.cumsum([len(x) for x in torque])[:-1])
+
+
+def _scaled(
+    name: str,
+    joint: int | None,
+    size: float,
+    torque: Sequence[Array],
+    visible: Sequence[Array],
+    noise: Array,
+    evidence: Evidence,
+) -> Case:
+    """Bring an effect to a size: the largest ratio of its visible rms to the residual's over the joints."""
+    ratio = float(np.max(_rms(visible, evidence) / noise))
+    return Case(name, joint, size, tuple(x * size / max(ratio, 1e-12) for x in torque))
