@@ -1,6 +1,6 @@
 """Known effects that are added to the torques of real recordings, at sizes that a plain model leaves visible."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,9 +19,6 @@ Added = tuple[Array, ...]  # (n, N) Nm by run
 
 #: Rms of what an effect leaves visible over the residual's.
 SIZES = (0.10, 0.20, 0.35, 0.50)
-#: Nm; what moves no more than this is not there.
-NOTHING = 1e-9
-
 #: effect -> term, parameter, values off every grid.
 OWN = {
     "cable_spring": ("spring", "k", ()),
@@ -83,7 +80,8 @@ def cases(
     rng, found = np.random.default_rng(seed), []
     noise = _rms(left, evidence)
     see = (lambda x: x) if whole else _Visible(evidence).of
-    shared = {name: _seen(evidence, name) for name in SHARED}
+    possible = {name: _possible(evidence, name, see, noise) for name in SHARED}
+    shared = {name: some for name, some in possible.items() if some}
     for size in SIZES:
         for name, by_run in columns.items():
             for j in rng.permutation(evidence.setup.space.dof)[:repeats]:
@@ -98,17 +96,26 @@ def cases(
     return found
 
 
-def _seen(evidence: Evidence, effect: str) -> list[Candidate]:
-    """Return an effect's candidates that do anything here: an offset of the base joint's encoder does not."""
-    some = [c for c in evidence.found.each if c.effect == effect]
-    most = [max(np.abs(x).max() for x in torques(evidence, _mixed(evidence, c))) for c in some]
-    return [c for c, torque in zip(some, most, strict=True) if torque > NOTHING]
+def _possible(
+    evidence: Evidence, effect: str, see: Callable[[Sequence[Array]], Sequence[Array]], noise: Array
+) -> list[Candidate]:
+    """Return an effect's candidates that are visible at the largest size within twice their prior width.
+
+    No gear is as soft as a light wrist would need, and free masses take nearly all of an encoder's offset.
+    """
+    found = []
+    for c in (c for c in evidence.found.each if c.effect == effect):
+        directions = evidence.found.directions.take(c.columns)
+        torque = torques(evidence, np.asarray(directions.vectors @ (2 * directions.std)))
+        if np.max(_rms(see(torque), evidence) / noise) >= SIZES[-1]:
+            found.append(c)
+    return found
 
 
-def _mixed(evidence: Evidence, c: Candidate, rng: np.random.Generator | None = None) -> Array:
+def _mixed(evidence: Evidence, c: Candidate, rng: np.random.Generator) -> Array:
     """Return an effect's parameters: its directions at random, or those of a clock, which move all alike."""
     vectors = evidence.found.directions.vectors[:, list(c.columns)].toarray()
-    if rng is None or c.effect == "time_delay":
+    if c.effect == "time_delay":
         return np.asarray(vectors.sum(axis=1))
     return np.asarray(vectors @ (np.abs(rng.standard_normal(len(c.columns))) + 0.2))
 
