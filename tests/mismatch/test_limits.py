@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from residuum.mismatch import limits
 from residuum.mismatch.limits import with_thresholds
 from residuum.mismatch.proof import FALSE_ALARMS
 from residuum.recordings import read
@@ -48,6 +49,15 @@ def test_a_touch_is_no_free_motion(recordings, model) -> None:
     )
     assert seen > 2 * free
     assert left_out == pytest.approx(free, rel=0.2)
+
+
+def test_of_long_recordings_the_middle_is_enough(recordings, model, monkeypatch) -> None:
+    whole = with_thresholds(model, recordings, ONE, []).thresholds
+    monkeypatch.setattr(limits, "_MOST", 5000)
+    middle = with_thresholds(model, recordings, ONE, []).thresholds
+    assert middle.hours == pytest.approx(5000 / recordings[0].rate / 3600, rel=0.15)
+    assert middle.hours < whole.hours
+    np.testing.assert_allclose(middle.static, whole.static, rtol=0.7)
 
 
 def test_too_little_motion_gives_none(recordings, model) -> None:
