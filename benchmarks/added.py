@@ -1,13 +1,13 @@
 """Known effects that are added to the torques of real recordings, at sizes that a plain model leaves visible."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from residuum.mismatch.candidates import Candidate
-from residuum.mismatch.columns import WIDTH, Column, space_of
+from residuum.mismatch.columns import WIDTH, Column, Space, space_of
 from residuum.mismatch.evidence import Evidence
 from residuum.mismatch.proof import joint_moves, rms_where
 from residuum.mismatch.rows import make_rows
@@ -78,27 +78,24 @@ def cases(
 ) -> list[Case]:
     """Draw every effect at every size, on joints at random; whole: sizes are those of all of it."""
     rng, found = np.random.default_rng(seed), []
-    noise = _rms(left, evidence)
-    see = (lambda x: x) if whole else _Visible(evidence).of
-    possible = {name: _possible(evidence, name, see, noise) for name in SHARED}
+    sight = _Sight(evidence, left, whole)
+    possible = {name: _possible(evidence, name, sight) for name in SHARED}
     shared = {name: some for name, some in possible.items() if some}
     for size in SIZES:
         for name, by_run in columns.items():
             for j in rng.permutation(evidence.setup.space.dof)[:repeats]:
                 only = [np.where(np.arange(x.shape[1]) == j, x, 0.0) for x in by_run]
-                found.append(_scaled(name, int(j), size, only, see(only), noise, evidence))
+                found.append(_scaled(name, int(j), size, only, sight))
         for name, some in shared.items():
             order = rng.permutation(len(some))
             for k in range(repeats):
                 c = some[order[k % len(some)]]
                 torque = torques(evidence, _mixed(evidence, c, rng))
-                found.append(_scaled(name, c.joint, size, torque, see(torque), noise, evidence))
+                found.append(_scaled(name, c.joint, size, torque, sight))
     return found
 
 
-def _possible(
-    evidence: Evidence, effect: str, see: Callable[[Sequence[Array]], Sequence[Array]], noise: Array
-) -> list[Candidate]:
+def _possible(evidence: Evidence, effect: str, sight: "_Sight") -> list[Candidate]:
     """Return an effect's candidates that are visible at the largest size within twice their prior width.
 
     No gear is as soft as a light wrist would need, and free masses take nearly all of an encoder's offset.
@@ -107,7 +104,7 @@ def _possible(
     for c in (c for c in evidence.found.each if c.effect == effect):
         directions = evidence.found.directions.take(c.columns)
         torque = torques(evidence, np.asarray(directions.vectors @ (2 * directions.std)))
-        if np.max(_rms(see(torque), evidence) / noise) >= SIZES[-1]:
+        if sight.ratio(torque) >= SIZES[-1]:
             found.append(c)
     return found
 
@@ -121,6 +118,7 @@ def _mixed(evidence: Evidence, c: Candidate, rng: np.random.Generator) -> Array:
 
 
 def torques(evidence: Evidence, vector: Array) -> list[Array]:
+    """Return what parameters (P,) make of each run (n, N), Nm."""
     space = evidence.setup.space
     return [
         np.stack([r.columns[j] @ vector[space.indices[j]] for j in range(space.dof)], axis=1)
@@ -128,43 +126,37 @@ def torques(evidence: Evidence, vector: Array) -> list[Array]:
     ]
 
 
-def _rms(values: Sequence[Array], evidence: Evidence) -> Array:
-    return rms_where(values, joint_moves(evidence))
+def plain_columns(space: Space, j: int) -> list[int]:
+    """Return where base parameters, offset, Coulomb and viscous friction stand in joint j's rows."""
+    start = len(space.seen[j])
+    own = [start + k for k, c in enumerate(space.own) if c.usual or c.term == "offset"]
+    return [*range(start), *own]
 
 
-class _Visible:
-    """What a baseline of free base parameters, offset, Coulomb and viscous friction leaves where joints move."""
+class _Sight:
+    """How large torques are beside the residuals where joints move.
 
-    def __init__(self, evidence: Evidence) -> None:
-        self.moving, self.bases = joint_moves(evidence), []
-        for j in range(evidence.setup.space.dof):
-            columns = np.concatenate([r.columns[j][:, self._plain(evidence, j)] for r in evidence.runs])
+    Of all of them (whole), or of what a baseline of `plain_columns`, free on each joint, leaves.
+    """
+
+    def __init__(self, evidence: Evidence, left: Sequence[Array], whole: bool) -> None:
+        self.moving, self.bases = joint_moves(evidence), list[Array]()
+        self.noise = rms_where(left, self.moving)
+        for j in range(0 if whole else evidence.setup.space.dof):
+            plain = plain_columns(evidence.setup.space, j)
+            columns = np.concatenate([r.columns[j][:, plain] for r in evidence.runs])
             self.bases.append(np.linalg.svd(columns[self.moving[:, j]], full_matrices=False)[0])
 
-    @staticmethod
-    def _plain(evidence: Evidence, j: int) -> list[int]:
-        space = evidence.setup.space
-        start = len(space.seen[j])
-        own = [start + k for k, c in enumerate(space.own) if c.usual or c.term == "offset"]
-        return [*range(start), *own]
-
-    def of(self, torque: Sequence[Array]) -> list[Array]:
-        whole = np.concatenate(torque)
+    def ratio(self, torque: Sequence[Array]) -> float:
+        """Return the largest ratio of rms over the joints."""
+        seen = np.concatenate(torque)
         for j, basis in enumerate(self.bases):
             moving = self.moving[:, j]
-            whole[moving, j] -= basis @ (basis.T @ whole[moving, j])
-        return np.split(whole, np.cumsum([len(x) for x in torque])[:-1])
+            seen[moving, j] -= basis @ (basis.T @ seen[moving, j])
+        return float(np.max(rms_where([seen], self.moving) / self.noise))
 
 
-def _scaled(
-    name: str,
-    joint: int | None,
-    size: float,
-    torque: Sequence[Array],
-    visible: Sequence[Array],
-    noise: Array,
-    evidence: Evidence,
-) -> Case:
-    """Bring an effect to a size: the largest ratio of its visible rms to the residual's over the joints."""
-    ratio = float(np.max(_rms(visible, evidence) / noise))
+def _scaled(name: str, joint: int | None, size: float, torque: Sequence[Array], sight: _Sight) -> Case:
+    """Bring an effect to a size."""
+    ratio = sight.ratio(torque)
     return Case(name, joint, size, tuple(x * size / max(ratio, 1e-12) for x in torque))

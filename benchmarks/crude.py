@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from added import plain_columns
 from numpy.typing import NDArray
 
 from residuum.mismatch.candidates import Candidate
@@ -24,9 +25,9 @@ RIDGE = 1e-9
 
 @dataclass(frozen=True)
 class Namer:
-    """Normal equations of every run R and joint: grams[j] (R, P, P) of [base | usual own | candidates].
+    """Normal equations of every run R and joint: grams[j] (R, P, P) of [fitted anyway | candidates].
 
-    base[j]: how many columns are fitted anyway; columns[j]: where each candidate's columns stand.
+    base[j]: how many columns are fitted anyway; known: what is taken for granted besides.
     """
 
     grams: tuple[Array, ...]
@@ -40,23 +41,21 @@ class Namer:
     def name(self, torques: Sequence[Array]) -> Candidate | None:
         """Return what lowers the left-out error most, if it is enough. torques: (n, N) by run."""
         gain = np.zeros((len(self.each), len(torques)))
-        plain = np.zeros(len(torques))
-        scale = []
+        counts = np.sum([m.sum(axis=0) for m in self.moving], axis=0)  # (N,) rows
         for j, gram in enumerate(self.grams):
             y = [t[m[:, j], j] for t, m in zip(torques, self.moving, strict=True)]
             right = np.array([x[j].T @ v for x, v in zip(self.rows, y, strict=True)])
             squares = np.array([v @ v for v in y])
             fixed = np.concatenate([np.arange(self.base[j]), *(self._of(c, j) for c in self.known)])
             before = _left_out(gram, right, squares, fixed)
-            scale.append(before.sum() / sum(len(v) for v in y))
-            plain += before / scale[j]
+            noise = before.sum() / counts[j]
             for i, c in enumerate(self.each):
                 own = np.setdiff1d(self._of(c, j), fixed)
                 if len(own):
                     after = _left_out(gram, right, squares, np.concatenate([fixed, own]))
-                    gain[i] += (before - after) / scale[j]
+                    gain[i] += (before - after) / noise
         best = int(np.argmax(gain.sum(axis=1)))
-        whole = plain.sum() / (len(self.grams) if self.each[best].joint is not None else 1)
+        whole = counts.sum() if self.each[best].joint is None else counts.mean()
         believed = gain[best].sum() > SHARE * whole and np.mean(gain[best] > 0) >= RUNS
         return self.each[best] if believed else None
 
@@ -82,17 +81,16 @@ def namer(evidence: Evidence, skip: Sequence[str]) -> Namer:
     rows = [list[Array]() for _ in evidence.runs]
     grams, base, places = [], [], []
     for j in range(space.dof):
-        start = len(space.seen[j])
-        usual = [start + k for k, c in enumerate(space.own) if c.usual or c.term == "offset"]
+        plain = plain_columns(space, j)
         own = vectors[space.indices[j]][:, used]
         here = np.flatnonzero(np.abs(own).sum(axis=0) > 0)
         place = np.full(vectors.shape[1], -1)
-        place[np.array(used)[here]] = start + len(usual) + np.arange(len(here))
+        place[np.array(used)[here]] = len(plain) + np.arange(len(here))
         for r, run in enumerate(evidence.runs):
             all_of = run.columns[j][moving[r][:, j]]
-            rows[r].append(np.hstack([all_of[:, :start], all_of[:, usual], all_of @ own[:, here]]))
+            rows[r].append(np.hstack([all_of[:, plain], all_of @ own[:, here]]))
         grams.append(np.array([x[j].T @ x[j] for x in rows]))
-        base.append(start + len(usual))
+        base.append(len(plain))
         places.append(place)
     return Namer(tuple(grams), tuple(map(tuple, rows)), moving, tuple(base), tuple(places), each)
 

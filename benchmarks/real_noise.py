@@ -45,11 +45,10 @@ FREE = (
 )  # fmt: skip
 
 
-def answer(evidence: Evidence, known: Judged, case: Case) -> Candidate | None:
-    """Return the first new finding."""
-    runs = tuple(replace(r, torque=r.torque + x) for r, x in zip(evidence.runs, case.added, strict=True))
-    changed = reweighed(replace(evidence, runs=runs), known.model)
-    judged = judge(changed, known=known, most=1)
+def answer(evidence: Evidence, known: Judged, with_it: Sequence[Array]) -> Candidate | None:
+    """Return the first new finding in other torques (n, N) by run."""
+    runs = tuple(replace(r, torque=x) for r, x in zip(evidence.runs, with_it, strict=True))
+    judged = judge(reweighed(replace(evidence, runs=runs), known.model), known=known, most=1)
     return next((a.score.candidate for a in judged.accepted if a.is_finding), None)
 
 
@@ -99,7 +98,7 @@ def run(
     begun = time.perf_counter()
     for k, case in enumerate(drawn, start=1):
         with_it = [r.torque + x for r, x in zip(evidence.runs, case.added, strict=True)]
-        results[case.size].append(Answered(case, answer(evidence, known, case), plain.name(with_it)))
+        results[case.size].append(Answered(case, answer(evidence, known, with_it), plain.name(with_it)))
         if sys.stderr.isatty() or k % 16 == 0:
             print(f"{k}/{len(drawn)}  {time.perf_counter() - begun:.0f} s", file=sys.stderr)
     report(results, say)

@@ -20,7 +20,7 @@ from .candidates import Candidate
 from .carried import Carried
 from .episodes import Contact, Episode, involved
 from .evidence import Evidence
-from .judging import Accepted, Judged, effective
+from .judging import Accepted, Judged, effective, nats_from
 from .quantities import Quantity, parameters_of, payload_numbers, quantity
 from .refit import LeftOut, observed_runs
 from .report.wording import joints_text, title
@@ -215,8 +215,7 @@ def _contact(p: Parts) -> list[dict[str, Any]]:
 
 def _strength(p: Parts, a: Accepted) -> float:
     """Nats on the rows of the slow band, from the share that it explains there."""
-    count = effective(p.evidence, a.score.candidate.joint)
-    return -0.5 * count * float(np.log1p(-min(a.share, 0.999999)))
+    return nats_from(a.share, effective(p.evidence, a.score.candidate.joint))
 
 
 def _squares(p: Parts) -> float:

@@ -90,10 +90,10 @@ def _of_one_load(found: Held, arm: Directions) -> Held:
     if len(good) != len(lengths) or good.all() or lengths[good].sum() < AGREE * lengths.sum():
         return found
     held = tuple(h.copy() for h in found.held)
-    for (x, part, _), same in zip(found.events, good, strict=True):
-        if not same:
-            k = next(k for k, run in enumerate(found.runs) if run is x)
-            held[k][part] = ~held[k][part]
+    for run, states in zip(found.runs, held, strict=True):
+        for (x, part, _), same in zip(found.events, good, strict=True):
+            if x is run and not same:
+                states[part] = ~states[part]
     return replace(found, held=held, fit=fitted(found.evidence, arm, found.runs, held))
 
 

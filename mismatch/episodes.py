@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .grams import Scales, regime
-from .physics import Physics, forces
+from .physics import Physics, fitted_force, forces
 from .rows import Rows
 from .segments import stretches
 
@@ -138,9 +138,7 @@ def _force(physics: Physics, q: Array, left: Array, sigma: Array, frame: int) ->
     """Return the share of residuals (n, N) that a force at a frame's origin explains, and its size, N."""
     columns = forces(physics, q, frame) / sigma[:, None]  # (n, N, 3)
     target = left / sigma
-    # a weak prior of 1 kN keeps directions that no joint feels at zero
-    gram = np.einsum("tji,tjk->tik", columns, columns) + 1e-6 * np.eye(3)
-    force = np.linalg.solve(gram, np.einsum("tji,tj->ti", columns, target)[:, :, None])[:, :, 0]
+    force = fitted_force(columns, target)
     rest = float(np.sum((target - np.einsum("tji,ti->tj", columns, force)) ** 2))
     share = 1 - rest / max(float(np.sum(target**2)), 1e-12)
     return share, float(np.median(np.linalg.norm(force, axis=1)))

@@ -154,9 +154,17 @@ def share_of(evidence: Evidence, test: Scored) -> float:
     if c.effect == "torque_ripple" and c.joint is not None:
         power = float(np.sum(test.size**2)) / 2
         return power / (power + float(evidence.scales.sigma[c.joint, 0]) ** 2)
-    return float(
-        1 - np.exp(-2 * max(test.evidence, 0.0) / max(effective(evidence, test.candidate.joint), 1.0))
-    )
+    return share_from(test.evidence, effective(evidence, test.candidate.joint))
+
+
+def share_from(nats: float, rows: float) -> float:
+    """Return the share of squared errors that evidence (nats) on so many independent rows explains."""
+    return float(1 - np.exp(-2 * max(nats, 0.0) / max(rows, 1.0)))
+
+
+def nats_from(share: float, rows: float) -> float:
+    """Return the nats on so many independent rows of a share of squared errors."""
+    return -0.5 * rows * float(np.log1p(-min(share, 0.999999)))
 
 
 def effective(evidence: Evidence, joint: int | None) -> float:

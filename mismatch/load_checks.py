@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from .grams import weights
 from .held import TEN, WIDTHS, Held
-from .physics import forces
+from .physics import fitted_force, forces
 from .segments import Mask, sums_of
 
 Array = NDArray[np.float64]
@@ -93,9 +93,7 @@ def _explained(found: Held) -> tuple[float, float]:
         root = np.sqrt(weights(x.rows, found.evidence.noise))
         target = e * root
         columns = forces(found.evidence.setup.physics, x.rows.q, e.shape[1]) * root[:, :, None]
-        gram = np.einsum("tji,tjk->tik", columns, columns) + 1e-6 * np.eye(3)
-        right = np.einsum("tji,tj->ti", columns, target)
-        force = np.einsum("ti,ti->t", right, np.linalg.solve(gram, right[:, :, None])[:, :, 0])
+        force = np.einsum("tj,tji,ti->t", target, columns, fitted_force(columns, target))
         each = np.stack([force, np.sum(target**2, axis=1)], axis=1)
         load += float(np.sum((target**2 - (target - y * root) ** 2)[h]))
         for k, part in enumerate((~h, h)):

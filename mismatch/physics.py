@@ -132,3 +132,13 @@ def forces(physics: Physics, q: Array, frame: int) -> Array:
         for g in physics.axes
     ]
     return np.stack(along, axis=2)
+
+
+def fitted_force(columns: Array, target: Array) -> Array:
+    """Return the force (T, 3), N, that fits torques (T, N) best, instant by instant; columns (T, N, 3).
+
+    In units of the noise: a weak prior of 1 kN keeps directions that no joint feels at zero.
+    """
+    gram = np.einsum("tji,tjk->tik", columns, columns) + 1e-6 * np.eye(3)
+    right = np.einsum("tji,tj->ti", columns, target)
+    return np.asarray(np.linalg.solve(gram, right[:, :, None])[:, :, 0], np.float64)

@@ -13,7 +13,7 @@ from scipy.linalg import cho_factor, cho_solve
 from .acceptance import EVIDENCE, SHARE
 from .evidence import Evidence, residual
 from .grams import weights
-from .judging import Judged, effective
+from .judging import Judged, effective, nats_from
 from .refit import observed_runs, parameters
 from .selection import Directions, normal_equations
 from .sharpen import without
@@ -37,7 +37,7 @@ def placebo_rate(evidence: Evidence, judged: Judged) -> float | None:
         if c.joint is None or not c.terms:
             continue
         found = _evidence(evidence, without(judged, k), c.joint, list(c.columns))
-        least = -0.5 * effective(evidence, c.joint) * float(np.log1p(-SHARE))  # nats of a share worth a name
+        least = nats_from(SHARE, effective(evidence, c.joint))
         passed += sum(x > max(EVIDENCE, least) for x in found)
         count += len(found)
     return passed / count if count else None

@@ -62,8 +62,9 @@ def first_guesses(runs: Sequence[Sums], std: Array, most: int) -> list[tuple[int
         ]
     found = list[tuple[int, slice, float]]()
     for nats, r, part in sorted(each, key=lambda x: -x[0]):
-        apart = all(r != run or part.stop <= p.start or part.start >= p.stop for run, p, _ in found)
-        if apart and len(found) < most:
+        if len(found) == most:
+            break
+        if all(r != run or part.stop <= p.start or part.start >= p.stop for run, p, _ in found):
             found.append((r, part, nats))
     return found
 

@@ -21,7 +21,5 @@ def sign(x: Array, width: float) -> Array:
 def _compiled() -> Callable[[Array, float], Array]:
     """Return the smooth sign in NumPy."""
     x, width = sp.Symbol("x", real=True), sp.Symbol("width", positive=True)
-    found: Callable[[Array, float], Array] = sp.lambdify(
-        (x, width), sp.simplify(smooth_sign(x, width)), "numpy"
-    )
+    found: Callable[[Array, float], Array] = sp.lambdify((x, width), smooth_sign(x, width), "numpy")
     return found

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from .acceptance import EVIDENCE, STEADY
 from .candidates import Candidate
 from .evidence import Evidence
-from .judging import Judged, effective, shade
+from .judging import Judged, effective, shade, share_from
 from .naming import scored
 
 Array = NDArray[np.float64]
@@ -34,7 +34,7 @@ def unknowns(evidence: Evidence, weighed: Evidence, judged: Judged) -> list[Unkn
     for s in scored(weighed, judged.model, curves):
         j = s.candidate.joint
         assert j is not None
-        share = float(1 - np.exp(-2 * max(s.total, 0.0) / max(effective(evidence, j), 1.0)))
+        share = share_from(s.total, effective(evidence, j))
         mine = (a for a in judged.accepted if a.score.candidate.joint in (None, j))
         if s.evidence < max((shade(a, evidence.setup.space.dof) for a in mine), default=0.0):
             continue
