@@ -14,7 +14,7 @@ from ..recordings.report import AuditReport
 from ..robots import Robot
 from ..robots.model import Input, Model
 from ..symbolic.nominal import nominal_model
-from .answer import Parts, bad_data, compose
+from .answer import compose
 from .carried import carried, unloaded
 from .coverage import cannot_show
 from .episodes import contact, episodes
@@ -24,10 +24,12 @@ from .lacking import full_of
 from .limits import with_thresholds
 from .naming import reweighed
 from .next_motion import next_motion
+from .parts import Parts
 from .placebo import placebo_rate
 from .proof import joint_moves, prove, rms_where
 from .refine import plain, refined, unnamed
 from .refit import observed_runs, parameters
+from .refusal import bad_data
 from .regions import regions
 from .result import Explanation, NextMotion, Source
 from .selection import Directions

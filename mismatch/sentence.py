@@ -1,0 +1,39 @@
+"""The answer in a sentence."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from .quantities import Quantity
+from .report.wording import joints_text, title
+
+
+def sentence(verdict: str, findings: Sequence[Mapping[str, Any]]) -> str:
+    """Return the answer in a sentence."""
+    if verdict == "nothing_missing":
+        return "Nothing is missing: the model explains these recordings to within their noise."
+    if verdict == "bad_data":
+        return "These recordings cannot be used: nothing was concluded from them."
+    named = [f for f in findings if f["effect"] != "unknown"]
+    unknown = sorted({j for f in findings if f["effect"] == "unknown" for j in f["joints"]})
+    parts = [
+        f"{title(f['effect'])}{_held(f)} on {joints_text(f['joints'])}{_numbers(f['parameters'])}"
+        for f in named
+    ]
+    if unknown:
+        parts.append(f"{title('unknown')} on {joints_text(unknown)}")
+    return "Missing from the model: " + "; and ".join(parts) + "."
+
+
+def _held(finding: Mapping[str, Any]) -> str:
+    count = len(finding.get("intervals", ())) if finding["effect"] == "payload" else 0
+    return f", held in {count} stretch{'es' * (count > 1)} of time," if count else ""
+
+
+def _numbers(parameters: Mapping[str, Quantity]) -> str:
+    shown = []
+    for name, x in list(parameters.items())[:2]:
+        if isinstance(x["value"], float):
+            spread = "" if x["std"] is None else f" ± {x['std']:.2g}"
+            unit = "" if x["unit"] == "1" else f" {x['unit']}"
+            shown.append(f"{name} {x['value']:.3g}{spread}{unit}")
+    return f" ({', '.join(shown)})" if shown else ""
