@@ -5,7 +5,6 @@ from numpy.typing import NDArray
 
 from .episodes import involved
 from .parts import Parts
-from .refit import observed_runs
 from .report.wording import title
 from .result import RuledOut, Trace
 
@@ -16,12 +15,12 @@ def traces(p: Parts) -> tuple[Trace, ...]:
     """Return residuals over time of the joints that matter, or of all when nothing was found."""
     space = p.evidence.setup.space
     mattering = {a.score.candidate.joint for a in p.judged.accepted} | {u.joint for u in p.unknowns}
-    mattering |= set(involved(p.episodes)) if p.episodes else set()
+    touched = (*p.episodes, *(p.pushed.contact.pushes if p.pushed else ()))
+    mattering |= set(involved(touched)) if touched else set()
     mattering |= set(range(space.dof)) if p.carried else set()
     joints = sorted(j for j in mattering if j is not None) or list(range(space.dof))
     found = []
-    for i, run in enumerate(observed_runs(p.evidence)):
-        rows = p.evidence.runs[run]
+    for i, rows in enumerate(p.runs):
         for j in joints:
             found.append(
                 Trace(
@@ -61,8 +60,7 @@ def curves(p: Parts) -> dict[int, tuple[str, Array, Array]]:
     for u in p.unknowns:
         if (place := places.get(u.joint)) is None or place.variable in ("t", "motor"):
             continue
-        runs = [p.evidence.runs[r] for r in observed_runs(p.evidence)]
-        x = np.concatenate([getattr(r, place.variable)[:, u.joint] for r in runs])
+        x = np.concatenate([getattr(r, place.variable)[:, u.joint] for r in p.runs])
         y = np.concatenate([e[:, u.joint] for e in p.after.residual])
         edges = np.unique(np.quantile(x, np.linspace(0, 1, 25)))
         which = np.clip(np.searchsorted(edges, x) - 1, 0, len(edges) - 2)

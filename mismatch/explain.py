@@ -1,7 +1,7 @@
 """`explain` from files to answer: read, gather evidence, judge, locate, prove, refine."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +17,7 @@ from ..symbolic.nominal import nominal_model
 from .answer import compose
 from .carried import carried, unloaded
 from .coverage import cannot_show
-from .episodes import contact, episodes
+from .episodes import episodes
 from .evidence import Evidence, gather, residual
 from .judging import Judged, judge
 from .lacking import full_of
@@ -27,6 +27,7 @@ from .next_motion import next_motion
 from .parts import Parts
 from .placebo import placebo_rate
 from .proof import joint_moves, prove, rms_where
+from .pushes import pushed, released, with_pushes
 from .refine import plain, refined, unnamed
 from .refit import observed_runs, parameters
 from .refusal import bad_data
@@ -87,37 +88,40 @@ def explain(task: Task, progress: Progress = lambda _: None) -> Explanation:
 
 
 def _explained(
-    task: Task, nominal: Model, evidence: Evidence, recordings: Sequence[Recording],
+    task: Task, nominal: Model, recorded: Evidence, recordings: Sequence[Recording],
     sources: tuple[Source, ...], lacks: tuple[str, ...], progress: Progress,
 ) -> Explanation:  # fmt: skip
     progress("a load that comes and goes")
-    recorded, load = evidence, carried(evidence)
-    if load is not None:
-        evidence = unloaded(recorded, load)
+    load = carried(recorded)
+    evidence = every = unloaded(recorded, load) if load else recorded
     judged = judge(evidence, progress)
+    progress("pushes")
+    push = pushed(every, judged)
+    if push:
+        evidence = released(every, push)
+        judged = judge(evidence, progress)
     progress("what is left")
     weighed = reweighed(evidence, judged.model)
     which = observed_runs(evidence)
-    names = [recordings[r].name for r in which]
-    left = _left(weighed, judged.model)
+    names, runs = [recordings[r].name for r in which], [every.runs[r] for r in which]
+    left = _left(weighed, judged.model, weighed)
     found = episodes(evidence.runs, which, left, evidence.scales, evidence.setup.friction[:, 0])
-    force = contact(
-        found,
-        evidence.runs,
-        dict(zip(which, left, strict=True)),
-        evidence.setup.physics,
-        evidence.scales.sigma[:, 0],
-    )
     strange = unknowns(evidence, weighed, judged)
     progress("sharpening")
     sharp = sharpened(weighed, judged)
     progress("proof on left-out blocks")
     kept = [a for a in judged.accepted if a.is_finding or not evidence.has_reference]
     baseline, whole = unnamed(weighed, kept), plain(weighed, kept)[0]
-    seen = None if load is None else reweighed(recorded, baseline)
-    proof, before, after = prove(weighed, baseline, whole, seen)
+    seen = released(recorded, push) if push else recorded
+    first = reweighed(seen, baseline) if load else weighed
+    proof, before, after = prove(weighed, baseline, whole, first)
+    if push:
+        left = with_pushes(left, _left(weighed, judged.model, every), push)
+        before = replace(
+            before, residual=with_pushes(before.residual, _left(first, baseline, recorded), push)
+        )
+        after = replace(after, residual=with_pushes(after.residual, _left(weighed, whole, every), push))
     gear = float(task.robot.joint[0].gear)
-    runs = [evidence.runs[r] for r in which]
     places = regions(runs, names, before.residual, gear)
     progress("placebos")
     rate = placebo_rate(weighed, judged)
@@ -125,21 +129,23 @@ def _explained(
     model = refined(weighed, nominal, task.robot, judged.accepted, {k: s.value for k, s in sharp.items()})
     if task.thresholds:
         progress("thresholds")
-        fitted = rms_where(_left(weighed, whole), joint_moves(weighed))
+        fitted = rms_where(_left(weighed, whole, weighed), joint_moves(weighed))
         inflate = np.maximum(1.0, proof.after / np.maximum(fitted, 1e-12))
-        touched = [e.span for e in found] + list(load.intervals if load else ())
+        pushes = push.contact.pushes if push else ()
+        touched = [e.span for e in (*found, *pushes)] + list(load.intervals if load else ())
         model = with_thresholds(model, [recordings[r] for r in which], inflate, touched)
     parts = Parts(
-        task.robot, nominal, sources, evidence, judged, sharp, found, left, force, strange, proof, before,
-        after, rate, tuple(places), names, lacks, model, _proposal(task, weighed, judged, progress), load,
+        task.robot, nominal, sources, evidence, judged, sharp, found, runs, left, push, strange, proof,
+        before, after, rate, tuple(places), names, lacks, model,
+        _proposal(task, weighed, judged, progress), load,
     )  # fmt: skip
     return compose(parts)
 
 
-def _left(evidence: Evidence, model: Directions) -> list[Array]:
-    """Return what a model that is fitted to all rows leaves of each observed run (n, N), Nm."""
-    own = parameters(evidence, model)
-    return [residual(evidence.runs[r], evidence.setup.space, own) for r in observed_runs(evidence)]
+def _left(fitted: Evidence, model: Directions, of: Evidence) -> Sequence[Array]:
+    """Return what a model that is fitted to some rows leaves of each observed run of others (n, N), Nm."""
+    own = parameters(fitted, model)
+    return [residual(of.runs[r], of.setup.space, own) for r in observed_runs(of)]
 
 
 def _proposal(task: Task, evidence: Evidence, judged: Judged, progress: Progress) -> NextMotion | None:

@@ -9,28 +9,27 @@ from scipy.stats import norm
 from ..symbolic.effects import EFFECTS
 from ..symbolic.terms import CATALOGUE
 from ..symbolic.terms.forms import equation
-from .acceptance import EVIDENCE
 from .candidates import Candidate
 from .carried import Carried
 from .episodes import Episode, involved
 from .judging import Accepted, effective, nats_from
 from .parts import Parts
+from .pushes import Pushed
 from .quantities import Quantity, parameters_of, payload_numbers, quantity
 from .sharpen import without
 
 #: On concealed cases (docs/trials.md), some outside the catalogue, this share of the surest names was right.
 SUREST = 0.85
-#: Of a joint's left-out squares, for episodes to be worth a word; nats, for those that are a force.
-_EPISODE_SHARE, _PUSH = 0.1, 10 * EVIDENCE
+#: Of a joint's left-out squares, for episodes to be worth a word.
+_EPISODE_SHARE = 0.1
 
 
 def findings_of(p: Parts) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
     """Return what has a name, strongest evidence first, and what has none."""
     found = [(_strength(p, a), _named(p, k, a)) for k, a in enumerate(p.judged.accepted) if a.is_finding]
-    pushes = _contact(p)
-    found += [(_squares(p), f) for f in pushes]
+    found += [(x.evidence, _contact(p, x)) for x in (p.pushed,) if x]
     found += [(c.evidence, _carried(p, c)) for c in (p.carried,) if c]
-    return [f for _, f in sorted(found, key=lambda x: -x[0])], _strange(p, bool(pushes))
+    return [f for _, f in sorted(found, key=lambda x: -x[0])], _strange(p)
 
 
 def _named(p: Parts, k: int, a: Accepted) -> dict[str, Any]:
@@ -116,40 +115,27 @@ def _carried_share(p: Parts, j: int) -> float:
     return float(np.clip(1 - rest, 0, 1))
 
 
-def _contact(p: Parts) -> list[dict[str, Any]]:
-    """Episodes that a force explains on several joints are forces from outside, however short they are.
-
-    But not where a gear has slack: its blows shake the whole arm.
-    """
-    slack = any(a.score.candidate.effect == "backlash" for a in p.judged.accepted)
-    if p.contact is None or slack or _squares(p) < _PUSH:
-        return []
-    pushes = p.contact.pushes
+def _contact(p: Parts, found: Pushed) -> dict[str, Any]:
+    """Return the finding of pushes, however short they are."""
+    pushes = found.contact.pushes
     joints = [j + 1 for j in involved(pushes)]
-    return [
-        {
-            "effect": "external_contact",
-            "joints": joints,
-            "indistinguishable_from": [],
-            "confidence": 0.9,
-            "parameters": {"force": quantity(p.contact.force, None, "N")}
-            | {f"torque_{j}": quantity(_strongest(pushes, j - 1), None, "Nm") for j in joints},
-            "equation": EFFECTS["external_contact"].equation,
-            "share": {str(j): round(_episode_share(p, pushes, j - 1), 3) for j in joints},
-            "intervals": [[round(x, 3) for x in e.span] for e in pushes],
-            "next_motion": None,
-        }
-    ]
+    return {
+        "effect": "external_contact",
+        "joints": joints,
+        "indistinguishable_from": [],
+        "confidence": 0.9,
+        "parameters": {"force": quantity(found.contact.force, None, "N")}
+        | {f"torque_{j}": quantity(_strongest(pushes, j - 1), None, "Nm") for j in joints},
+        "equation": EFFECTS["external_contact"].equation,
+        "share": {str(j): round(_episode_share(p, pushes, j - 1), 3) for j in joints},
+        "intervals": [[round(x, 3) for x in e.span] for e in pushes],
+        "next_motion": None,
+    }
 
 
 def _strength(p: Parts, a: Accepted) -> float:
     """Nats on the rows of the slow band, from the share that it explains there."""
     return nats_from(a.share, effective(p.evidence, a.score.candidate.joint))
-
-
-def _squares(p: Parts) -> float:
-    """Evidence of the episodes, nats: half their squared residuals over the noise, memory taken off."""
-    return 0.5 * sum(e.worth for e in p.episodes) / float(np.mean(p.evidence.scales.inflation))
 
 
 def _strongest(episodes: Sequence[Episode], j: int) -> float:
@@ -162,14 +148,14 @@ def _episode_share(p: Parts, episodes: Sequence[Episode], j: int) -> float:
     return float(min(inside / max(total, 1e-12), 1.0))
 
 
-def _strange(p: Parts, contact: bool) -> list[dict[str, Any]]:
-    """Return what stays unexplained, a joint at a time; contact: whether episodes have a name."""
+def _strange(p: Parts) -> list[dict[str, Any]]:
+    """Return what stays unexplained, a joint at a time; beside pushes, episodes are what is left of them."""
     shares = {u.joint: u.share for u in p.unknowns}
-    if p.episodes and not contact:
+    if p.episodes and not p.pushed:
         for j in involved(p.episodes):
             if (share := _episode_share(p, p.episodes, j)) > _EPISODE_SHARE:
                 shares[j] = max(shares.get(j, 0.0), share)
-    spans = [] if contact else [[round(x, 3) for x in e.span] for e in p.episodes]
+    spans = [] if p.pushed else [[round(x, 3) for x in e.span] for e in p.episodes]
     found = []
     for j, share in sorted(shares.items(), key=lambda x: -x[1]):
         item: dict[str, Any] = {

@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 from ..robots import Robot
 from ..robots.model import Model
 from .carried import Carried
-from .episodes import Contact, Episode
+from .episodes import Episode
 from .evidence import Evidence
 from .judging import Judged
+from .pushes import Pushed
 from .refit import LeftOut
 from .result import NextMotion, Proof, Region, Source
+from .rows import Rows
 from .sharpen import Sharp
 from .unknown import Unknown
 
@@ -22,7 +24,11 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Parts:
-    """Everything that was found out. left: what all names leave (n, N), Nm, by run."""
+    """Everything that was found out.
+
+    evidence: of the rows without pushes; runs, left, before, after: of all rows of the observed runs. left:
+    what all names leave (n, N), Nm.
+    """
 
     robot: Robot
     nominal: Model
@@ -31,8 +37,9 @@ class Parts:
     judged: Judged
     sharp: Mapping[int, Sharp]
     episodes: Sequence[Episode]
+    runs: Sequence[Rows]
     left: Sequence[Array]
-    contact: Contact | None
+    pushed: Pushed | None
     unknowns: Sequence[Unknown]
     proof: Proof
     before: LeftOut

@@ -21,15 +21,15 @@ FALSE_ALARMS = 1.0
 
 
 def prove(
-    evidence: Evidence, before: Directions, after: Directions, recorded: Evidence | None = None
+    evidence: Evidence, before: Directions, after: Directions, recorded: Evidence
 ) -> tuple[Proof, LeftOut, LeftOut]:
     """Compare two models on rows that neither has seen; also return what both leave there.
 
-    recorded: the rows as they were, for the first model, when something found was taken off `evidence`.
+    recorded: the rows for the first model, with what was found and taken off `evidence`.
     """
     curves = [c for joint in evidence.found.curve for c in joint]
     flexible = after + evidence.found.directions.take(curves)
-    first = left_out(recorded or evidence, before)
+    first = left_out(recorded, before)
     last, best = (left_out(evidence, m) for m in (after, flexible))
     moving = joint_moves(evidence)
     rms_first, rms_last, rms_best = (rms_where(x.residual, moving) for x in (first, last, best))

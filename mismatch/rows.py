@@ -30,6 +30,8 @@ _PORTION = 300
 DELAYS = (0.004, 0.01, 0.02)
 #: Nm; a drive's torque within this has no sign.
 DRIVE = 0.02
+#: What rows hold by joint, (n, N).
+_OF_JOINTS = ("torque", "moving", "sliding", "q", "qd", "load", "temperature", "since")
 
 
 @dataclass(frozen=True)
@@ -37,8 +39,7 @@ class Rows:
     """n rows of a recording: time (n,) s; torque (n, N) Nm; columns[j] (n, P_j) in the space's order.
 
     moving, sliding (n, N): shares of the kernel in which the joint is not at rest, and is faster than REST.
-    starts: where gap-free stretches begin; q, qd, load, temperature, since (n, N): smoothed state there.
-    step: s.
+    q, qd, load, temperature, since (n, N): smoothed state there. step: s.
     """
 
     time: Array
@@ -51,7 +52,6 @@ class Rows:
     load: Array
     temperature: Array
     since: Array
-    starts: tuple[int, ...]
     step: float
     fast: Fast | None = None
 
@@ -68,16 +68,19 @@ def make_rows(recording: Recording, setup: Setup) -> Rows:
     """Filter a clean recording. There may be no row at all: stretches shorter than the kernel give none."""
     track, kernel, rate = track_of(recording, setup)
     step = 1 / (4 * kernel.cutoff)
-    pieces, starts, count = list[Rows](), list[int](), 0
+    pieces = list[Rows]()
     for stretch in segments(track.time, GAP / rate):
-        for k, (at, part) in enumerate(portions(track.time, stretch, kernel, step, _PORTION)):
-            if k == 0:
-                starts.append(count)
+        for at, part in portions(track.time, stretch, kernel, step, _PORTION):
             pieces.append(_filtered(track, part, at, setup, kernel))
-            count += len(at)
     origin = float(recording.timestamp[0])
-    rows = _joined(pieces, tuple(starts), step, setup.space, origin)
+    rows = _joined(pieces, step, setup.space, origin)
     return replace(rows, fast=_fast(track, setup, kernel, origin))
+
+
+def kept(rows: Rows, keep: NDArray[np.bool_]) -> Rows:
+    """Return some rows (n,)."""
+    some: dict[str, Any] = {name: getattr(rows, name)[keep] for name in ("time", *_OF_JOINTS)}
+    return replace(rows, columns=tuple(x[keep] for x in rows.columns), **some)
 
 
 def _fast(track: Track, setup: Setup, kernel: Kernel, origin: float) -> Fast | None:
@@ -211,16 +214,15 @@ def _placed(at: Array, moved: Array, kept: Array, m: int, b: int, setup: Setup) 
                 if row == j:
                     rigid[:, position[column]] += sign * values[:, i]
         matrices.append(np.hstack([rigid, own[:, j], common[:, j]]))
-    return Rows(at, torque, tuple(matrices), moving, sliding, q, qd, load, temperature, since, (), 0.0)
+    return Rows(at, torque, tuple(matrices), moving, sliding, q, qd, load, temperature, since, 0.0)
 
 
-def _joined(pieces: list[Rows], starts: tuple[int, ...], step: float, space: Space, origin: float) -> Rows:
+def _joined(pieces: list[Rows], step: float, space: Space, origin: float) -> Rows:
     if not pieces:
         none = np.empty((0, space.dof))
         empty = tuple(np.empty((0, len(ix))) for ix in space.indices)
-        return Rows(np.empty(0), none, empty, none, none, none, none, none, none, none, (), step)
-    names = ("torque", "moving", "sliding", "q", "qd", "load", "temperature", "since")
-    joined: dict[str, Any] = {name: np.vstack([getattr(p, name) for p in pieces]) for name in names}
+        return Rows(np.empty(0), none, empty, none, none, none, none, none, none, none, step)
+    joined: dict[str, Any] = {name: np.vstack([getattr(p, name) for p in pieces]) for name in _OF_JOINTS}
     columns = tuple(np.vstack([p.columns[j] for p in pieces]) for j in range(space.dof))
     time = np.concatenate([p.time for p in pieces]) + origin
-    return Rows(time, columns=columns, starts=starts, step=step, **joined)
+    return Rows(time, columns=columns, step=step, **joined)

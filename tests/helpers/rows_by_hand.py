@@ -24,7 +24,7 @@ def rows(count: int, joints: int = 2, fast=None, **given) -> Rows:
     } | given
     columns = tuple(np.zeros((count, 0)) for _ in range(joints))
     time = STEP * np.arange(count)
-    return Rows(time, columns=columns, starts=(0,), step=STEP, fast=fast, **plain)
+    return Rows(time, columns=columns, step=STEP, fast=fast, **plain)
 
 
 def ar1(count: int, keep: float, rng, joints: int = 2):

@@ -21,6 +21,7 @@ from residuum.symbolic.nominal import nominal_model
 from residuum.virtual import Plant, simulate
 from residuum.virtual import effects as e
 from residuum.virtual.motions import fourier
+from residuum.virtual.surroundings import Contact
 
 FRICTION = np.array([[5.0, 2.0], [6.0, 3.0], [4.0, 2.0]])
 _W = 2 * np.pi * np.array([0.13, 0.21, 0.33])
@@ -89,6 +90,12 @@ CHANGED = {
     "payload": {"payload": e.Payload(mass=2.0, centre_of_mass=(0.0, 0.02, 0.05))},
     "load": {"load_dependent_friction": (e.LoadDependentFriction(joint=2, coefficient=0.1),)},
     "gain": {"drive_gain": (e.DriveGain(joint=3, error=0.2),)},
+    "pushed": {
+        "external_contact": tuple(
+            Contact(start=t, end=t + 1.5, force=(20.0, -20.0, 20.0), link=6, profile="hold")
+            for t in (8.0, 20.0)
+        )
+    },
     "asymmetry": {"friction_asymmetry": (e.FrictionAsymmetry(joint=1, torque=2.0),)},
 }
 

@@ -1,0 +1,93 @@
+"""Pushes: one force on all joints, told from what is none, and kept out of every fit."""
+
+import numpy as np
+import pytest
+from rows_by_hand import STEP, ar1, rows
+
+from residuum.mismatch import Task, explain
+from residuum.mismatch.episodes import episodes
+from residuum.mismatch.grams import Scales
+from residuum.mismatch.physics import forces
+from residuum.mismatch.pushes import contact
+from residuum.mismatch.rows import kept
+from residuum.robots import load_robot
+
+LONG = 3600
+SCALES = Scales(np.tile([0.3, 0.6, 0.9], (3, 1)), np.full(3, 4.0), np.full(3, np.inf))
+PUSH = slice(1200, 1500)
+
+
+def quiet(seed: int = 1):
+    return 0.3 * ar1(LONG, 0.6, np.random.default_rng(seed), 3)
+
+
+def found_in(left, run):
+    return episodes([run], [0], [left], SCALES, np.zeros(3))
+
+
+def test_a_push_is_one_force(arm) -> None:
+    run, left = rows(LONG, 3), quiet()
+    left[PUSH] += forces(arm.physics, run.q[PUSH], 3) @ np.array([-20.0, 10.0, 30.0])
+    (episode,) = found_in(left, run)
+    force = contact([episode], [run], {0: left}, arm.physics, SCALES.sigma[:, 0])
+    assert force is not None
+    assert force.pushes == (episode,)
+    assert force.force == pytest.approx(np.linalg.norm([20, 10, 30]), rel=0.2)
+
+
+def test_a_single_joint_is_no_contact(arm) -> None:
+    run, left = rows(LONG, 3), quiet()
+    left[PUSH, 1] += 5.0
+    (episode,) = found_in(left, run)
+    assert contact([episode], [run], {0: left}, arm.physics, SCALES.sigma[:, 0]) is None
+
+
+def test_what_changes_its_direction_is_no_push(arm) -> None:
+    """As a wrong delay leaves it at jerks: one force fits every instant, but it turns round."""
+    run, left = rows(LONG, 3), quiet()
+    swing = np.sin(np.linspace(0, 4 * np.pi, PUSH.stop - PUSH.start))
+    left[PUSH] += swing[:, None] * (forces(arm.physics, run.q[PUSH], 3) @ np.array([-20.0, 10.0, 30.0]))
+    some = found_in(left, run)
+    assert some
+    assert contact(some, [run], {0: left}, arm.physics, SCALES.sigma[:, 0]) is None
+
+
+def test_what_else_comes_and_goes_weakly_does_not_hide_a_push(arm) -> None:
+    run, left = rows(LONG, 3), quiet()
+    left[PUSH] += forces(arm.physics, run.q[PUSH], 3) @ np.array([-20.0, 10.0, 30.0])
+    left[2400:2430, 0] += 1.5
+    push, other = found_in(left, run)
+    force = contact([push, other], [run], {0: left}, arm.physics, SCALES.sigma[:, 0])
+    assert force is not None
+    assert push in force.pushes
+
+
+def test_rows_that_are_kept_stay_as_they_were() -> None:
+    run, keep = rows(LONG, 3), np.ones(LONG, bool)
+    keep[PUSH] = False
+    some = kept(run, keep)
+    assert len(some) == LONG - (PUSH.stop - PUSH.start) and some.step == STEP
+    np.testing.assert_array_equal(some.time, run.time[keep])
+    np.testing.assert_array_equal(some.q, run.q[keep])
+    assert all(len(x) == len(some) for x in some.columns)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("reference", [True, False])
+def test_long_strong_pushes_bend_no_fit(simulated, reference: bool) -> None:
+    """A tenth of the time pushed by 35 N: far more than all else in the recording."""
+    robot, digest = load_robot("ur5e")
+    healthy = (simulated("clean", 11), simulated("clean", 12)) if reference else ()
+    task = Task((simulated("pushed", 3),), healthy, robot, digest, 6, propose=False, thresholds=False)
+    answer = explain(task)
+    found, *others = answer.findings["findings"]
+    assert found["effect"] == "external_contact"
+    assert found["parameters"]["force"]["value"] == pytest.approx(35.0, rel=0.1)
+    first, second = found["intervals"]
+    assert first == pytest.approx([8.0, 9.5], abs=0.3) and second == pytest.approx([20.0, 21.5], abs=0.3)
+    # without a reference the gears' own curves are findings, but no body and nothing unknown
+    bent = {"payload", "link_inertial", "base_tilt", "encoder_offset", "unknown"}
+    assert not others if reference else bent.isdisjoint(f["effect"] for f in others)
+    # the page shows the pushes, the error that the model leaves is without them
+    assert max(float(np.abs(t.after).max()) for t in answer.traces) > 15.0
+    assert max(answer.findings["fit"]["after"]) < 1.0
