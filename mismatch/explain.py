@@ -15,7 +15,7 @@ from ..robots import Robot
 from ..robots.model import Input, Model
 from ..symbolic.nominal import nominal_model
 from .answer import compose
-from .carried import carried, unloaded
+from .carried import Carried, carried, unloaded
 from .coverage import cannot_show
 from .episodes import episodes
 from .evidence import Evidence, gather, residual
@@ -27,12 +27,12 @@ from .next_motion import next_motion
 from .parts import Parts
 from .placebo import placebo_rate
 from .proof import joint_moves, prove, rms_where
-from .pushes import pushed, released, with_pushes
+from .pushes import Pushed, pushed, released, with_pushes
 from .refine import plain, refined, unnamed
-from .refit import observed_runs, parameters
+from .refit import LeftOut, observed_runs, parameters
 from .refusal import bad_data
 from .regions import regions
-from .result import Explanation, NextMotion, Source
+from .result import Explanation, NextMotion, Proof, Source
 from .selection import Directions
 from .sharpen import sharpened, without
 from .unknown import unknowns
@@ -87,40 +87,54 @@ def explain(task: Task, progress: Progress = lambda _: None) -> Explanation:
     return _explained(task, nominal, evidence, recordings, sources, lacks.texts, progress)
 
 
+@dataclass(frozen=True)
+class _Told:
+    """What was named, and from which rows.
+
+    recorded; every: a load that comes and goes taken off; evidence: rows of pushes left out as well.
+    """
+
+    recorded: Evidence
+    every: Evidence
+    evidence: Evidence
+    load: Carried | None
+    push: Pushed | None
+    judged: Judged
+
+
+def _told(recorded: Evidence, progress: Progress) -> _Told:
+    progress("a load that comes and goes")
+    load = carried(recorded)
+    every = unloaded(recorded, load) if load else recorded
+    judged = judge(every, progress)
+    progress("pushes")
+    if not (push := pushed(every, judged)):
+        return _Told(recorded, every, every, load, None, judged)
+    evidence = released(every, push)
+    return _Told(recorded, every, evidence, load, push, judge(evidence, progress))
+
+
 def _explained(
     task: Task, nominal: Model, recorded: Evidence, recordings: Sequence[Recording],
     sources: tuple[Source, ...], lacks: tuple[str, ...], progress: Progress,
 ) -> Explanation:  # fmt: skip
-    progress("a load that comes and goes")
-    load = carried(recorded)
-    evidence = every = unloaded(recorded, load) if load else recorded
-    judged = judge(evidence, progress)
-    progress("pushes")
-    push = pushed(every, judged)
-    if push:
-        evidence = released(every, push)
-        judged = judge(evidence, progress)
+    t = _told(recorded, progress)
+    evidence, judged = t.evidence, t.judged
     progress("what is left")
     weighed = reweighed(evidence, judged.model)
     which = observed_runs(evidence)
-    names, runs = [recordings[r].name for r in which], [every.runs[r] for r in which]
+    names, runs = [recordings[r].name for r in which], [t.every.runs[r] for r in which]
     left = _left(weighed, judged.model, weighed)
     found = episodes(evidence.runs, which, left, evidence.scales, evidence.setup.friction[:, 0])
+    if t.push:
+        left = with_pushes(left, _left(weighed, judged.model, t.every), t.push)
     strange = unknowns(evidence, weighed, judged)
     progress("sharpening")
     sharp = sharpened(weighed, judged)
     progress("proof on left-out blocks")
     kept = [a for a in judged.accepted if a.is_finding or not evidence.has_reference]
-    baseline, whole = unnamed(weighed, kept), plain(weighed, kept)[0]
-    seen = released(recorded, push) if push else recorded
-    first = reweighed(seen, baseline) if load else weighed
-    proof, before, after = prove(weighed, baseline, whole, first)
-    if push:
-        left = with_pushes(left, _left(weighed, judged.model, every), push)
-        before = replace(
-            before, residual=with_pushes(before.residual, _left(first, baseline, recorded), push)
-        )
-        after = replace(after, residual=with_pushes(after.residual, _left(weighed, whole, every), push))
+    whole = plain(weighed, kept)[0]
+    proof, before, after = _proved(t, weighed, unnamed(weighed, kept), whole)
     gear = float(task.robot.joint[0].gear)
     places = regions(runs, names, before.residual, gear)
     progress("placebos")
@@ -131,15 +145,32 @@ def _explained(
         progress("thresholds")
         fitted = rms_where(_left(weighed, whole, weighed), joint_moves(weighed))
         inflate = np.maximum(1.0, proof.after / np.maximum(fitted, 1e-12))
-        pushes = push.contact.pushes if push else ()
-        touched = [e.span for e in (*found, *pushes)] + list(load.intervals if load else ())
+        pushes = t.push.contact.pushes if t.push else ()
+        touched = [e.span for e in (*found, *pushes)] + list(t.load.intervals if t.load else ())
         model = with_thresholds(model, [recordings[r] for r in which], inflate, touched)
     parts = Parts(
-        task.robot, nominal, sources, evidence, judged, sharp, found, runs, left, push, strange, proof,
+        task.robot, nominal, sources, evidence, judged, sharp, found, runs, left, t.push, strange, proof,
         before, after, rate, tuple(places), names, lacks, model,
-        _proposal(task, weighed, judged, progress), load,
+        _proposal(task, weighed, judged, progress), t.load,
     )  # fmt: skip
     return compose(parts)
+
+
+def _proved(
+    t: _Told, weighed: Evidence, baseline: Directions, whole: Directions
+) -> tuple[Proof, LeftOut, LeftOut]:
+    """Prove on the rows without pushes; what both models leave is of all rows."""
+    seen = released(t.recorded, t.push) if t.push else t.recorded
+    first = reweighed(seen, baseline) if t.load else weighed
+    proof, before, after = prove(weighed, baseline, whole, first)
+    if t.push is None:
+        return proof, before, after
+    early, late = _left(first, baseline, t.recorded), _left(weighed, whole, t.every)
+    return (
+        proof,
+        replace(before, residual=with_pushes(before.residual, early, t.push)),
+        replace(after, residual=with_pushes(after.residual, late, t.push)),
+    )
 
 
 def _left(fitted: Evidence, model: Directions, of: Evidence) -> Sequence[Array]:
