@@ -28,9 +28,11 @@ OWN = {
     "nonlinear_viscous (power 0.4)": ("power", "Fp", (("n", 0.4),)),
     "load_dependent_friction": ("load_dependent", "mu", ()),
     "position_dependent_friction": ("position_dependent", "A", (("n", 1.0),)),
-    "presliding_hysteresis": ("presliding", "A", (("zs", 0.008),)),
-    "velocity_lag": ("lag", "A", (("lag", 0.009),)),
 }
+#: effect -> term, nonlinear value: what friction does at reversals, the whole Coulomb level of it. Its travel
+#: (rad) or time (s), off every grid, makes its size; a part of the level, as no gear has it, is not drawn.
+REVERSALS = {"presliding_hysteresis": ("presliding", "zs"), "velocity_lag": ("lag", "lag")}
+VALUES, NEAR = tuple(float(x) for x in np.geomspace(0.0011, 0.037, 25)), 0.1
 #: effect -> the candidate whose directions make it.
 SHARED = ("encoder_offset", "joint_elasticity", "base_tilt", "time_delay")
 
@@ -52,15 +54,31 @@ class Case:
 
 def columns_of(recordings: Sequence[Recording], evidence: Evidence) -> dict[str, list[Array]]:
     """Return each own effect's filtered column on all joints: effect -> (n, N) by run."""
-    own = tuple(Column(t, p, _with_width(t, v)) for t, p, v in OWN.values())
+    own = [Column(t, p, _with_width(t, v)) for t, p, v in OWN.values()]
+    return dict(zip(OWN, _filtered(recordings, evidence, own), strict=True))
+
+
+def reversals_of(recordings: Sequence[Recording], evidence: Evidence) -> dict[str, list[list[Array]]]:
+    """Return what friction of the Coulomb level does at reversals: effect -> by VALUES -> (n, N) by run, Nm."""
+    found, level = {}, evidence.setup.friction[:, 0]
+    for effect, (term, name) in REVERSALS.items():
+        own = [Column(term, "A", _with_width(term, ((name, v),))) for v in VALUES]
+        found[effect] = [[x * level for x in runs] for runs in _filtered(recordings, evidence, own)]
+    return found
+
+
+def _filtered(
+    recordings: Sequence[Recording], evidence: Evidence, own: Sequence[Column]
+) -> list[list[Array]]:
+    """Return columns on all joints, (n, N) by run, of each."""
     physics = evidence.setup.physics
-    setup = replace(evidence.setup, space=space_of(physics.regressor, own, ()), limits=None)
-    found: dict[str, list[Array]] = {name: [] for name in OWN}
+    setup = replace(evidence.setup, space=space_of(physics.regressor, tuple(own), ()), limits=None)
+    found = [list[Array]() for _ in own]
     for recording in recordings:
         rows = make_rows(recording, setup)
-        for k, name in enumerate(OWN):
+        for k, runs in enumerate(found):
             at = [len(setup.space.seen[j]) + k for j in range(physics.dof)]
-            found[name].append(np.stack([rows.columns[j][:, a] for j, a in enumerate(at)], axis=1))
+            runs.append(np.stack([rows.columns[j][:, a] for j, a in enumerate(at)], axis=1))
     return found
 
 
@@ -71,6 +89,7 @@ def _with_width(term: str, values: tuple[tuple[str, float], ...]) -> tuple[tuple
 def cases(
     evidence: Evidence,
     columns: dict[str, list[Array]],
+    reversals: dict[str, list[list[Array]]],
     left: Sequence[Array],
     repeats: int,
     seed: int,
@@ -81,11 +100,19 @@ def cases(
     sight = _Sight(evidence, left, whole)
     possible = {name: _possible(evidence, name, sight) for name in SHARED}
     shared = {name: some for name, some in possible.items() if some}
+    joints = range(evidence.setup.space.dof)
+    ratios = {
+        name: np.array([[sight.ratio(_only(runs, j)) for j in joints] for runs in by_value])
+        for name, by_value in reversals.items()
+    }
     for size in SIZES:
         for name, by_run in columns.items():
-            for j in rng.permutation(evidence.setup.space.dof)[:repeats]:
-                only = [np.where(np.arange(x.shape[1]) == j, x, 0.0) for x in by_run]
-                found.append(_scaled(name, int(j), size, only, sight))
+            for j in rng.permutation(joints)[:repeats]:
+                found.append(_scaled(name, int(j), size, _only(by_run, j), sight))
+        for name, by_value in ratios.items():
+            near = {int(j): k for k, j in np.argwhere(np.abs(np.log(by_value / size)) < NEAR)}
+            for j in rng.permutation(list(near))[:repeats]:
+                found.append(Case(name, int(j), size, tuple(_only(reversals[name][near[int(j)]], j))))
         for name, some in shared.items():
             order = rng.permutation(len(some))
             for k in range(repeats):
@@ -93,6 +120,11 @@ def cases(
                 torque = torques(evidence, _mixed(evidence, c, rng))
                 found.append(_scaled(name, c.joint, size, torque, sight))
     return found
+
+
+def _only(runs: Sequence[Array], j: int) -> list[Array]:
+    """Return torques (n, N) by run on joint j alone."""
+    return [np.where(np.arange(x.shape[1]) == j, x, 0.0) for x in runs]
 
 
 def _possible(evidence: Evidence, effect: str, sight: "_Sight") -> list[Candidate]:

@@ -6,6 +6,7 @@ What the recordings lack by themselves is found first and taken off (masses and 
 Then one effect at a time is added to the filtered torque of every run, with nonlinear values that stand on
 no grid. Its size is the rms of what base parameters, offset, Coulomb and viscous friction leave of it
 (--whole: of all of it) over the residual's rms, both where the joint moves.
+Late signs and presliding come at the joint's Coulomb level, and only where some travel or time has the size.
 Beside it a plain leave-one-run-out namer answers the same cases (`crude.py`).
 Right: the first new name is of the effect's family, on its joint where it has one. Payloads, links and rotors
 are not among them: without a reference the base parameters of this arm are free, and hold them; nor are
@@ -20,7 +21,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from added import SIZES, Case, cases, columns_of, torques
+from added import SIZES, Case, cases, columns_of, reversals_of, torques
 from crude import namer
 from numpy.typing import NDArray
 
@@ -92,7 +93,8 @@ def run(
     known = everything(evidence, known)  # what only shows now that the rest is gone
     theta = parameters(evidence, known.model)
     left = [residual(r, evidence.setup.space, theta) for r in evidence.runs]
-    drawn = cases(evidence, columns_of(recordings, evidence), left, repeats, seed, whole)
+    own, reversals = columns_of(recordings, evidence), reversals_of(recordings, evidence)
+    drawn = cases(evidence, own, reversals, left, repeats, seed, whole)
     plain = namer(evidence, FREE).knowing([r.torque for r in evidence.runs])
     results: dict[float, list[Answered]] = {s: [] for s in SIZES}
     begun = time.perf_counter()

@@ -25,24 +25,27 @@ _STEP = 1e-4
 
 @dataclass(frozen=True)
 class Gravity:
-    """The arm under gravity along one axis: its regressor and the published base parameters there."""
+    """The arm under gravity along one axis: its regressor and the published base parameters (B,) there.
+
+    points (B, N, 4): base parameters of 1 kg at the origin of each frame 1..N, and of 1 kg m along its axes.
+    """
 
     regressor: Regressor
     base: Array
-    points: Array  # base parameters of 1 kg at the origin of each frame 1..N, (B, N)
+    points: Array
 
 
 @dataclass(frozen=True)
 class Physics:
     """An arm's regressor, published base parameters (B,), the map from links, and gravity by axis.
 
-    rotors (B,): what the published rotors alone amount to.
+    reflected (N,): the published rotors' inertias on the side of the joint, kg m^2.
     """
 
     regressor: Regressor
     published: Array
     map: LinkMap
-    rotors: Array
+    reflected: Array
     axes: tuple[Gravity, ...]
     strength: float  # m/s^2
 
@@ -50,6 +53,11 @@ class Physics:
     def dof(self) -> int:
         """N."""
         return self.regressor.dof
+
+    @property
+    def rotors(self) -> Array:
+        """What the published rotors alone amount to, (B,)."""
+        return np.asarray(self.map.rotors @ self.reflected, np.float64)
 
 
 def physics_of(model: Model, robot: Robot) -> Physics:
@@ -80,16 +88,19 @@ def _physics(model_json: str, robot_json: str) -> Physics:
         nominal = nominal_model(turned, "", model.dof, model.locked_angles)
         axes.append(Gravity(*published(nominal), _masses(nominal)))
     mapping = link_map(model)
-    rotors = mapping.rotors @ np.array([j.reflected_inertia for j in robot.joint[: model.dof]])
-    return Physics(found, own, mapping, rotors, tuple(axes), strength)
+    reflected = np.array([j.reflected_inertia for j in robot.joint[: model.dof]])
+    return Physics(found, own, mapping, reflected, tuple(axes), strength)
 
 
 def _masses(model: Model) -> Array:
-    """Return the base parameters (B, N) of 1 kg at the origin of each frame."""
+    """Return the base parameters (B, N, 4) of 1 kg at the origin of each frame, and of 1 kg m along its axes.
+
+    Axes are those of the link's turned frame, in which its parameters stand.
+    """
     links, found = link_map(model).links, []
     for k, joint in enumerate(model.joint):  # m, mx, my, mz of link k in its turned frame stand at 10 k
-        m, mx, _, mz = links[:, 10 * k : 10 * k + 4].T
-        found.append(m + joint.a * mx + joint.d * mz)
+        m, mx, my, mz = links[:, 10 * k : 10 * k + 4].T
+        found.append(np.stack([m + joint.a * mx + joint.d * mz, mx, my, mz], axis=1))
     return np.stack(found, axis=1)
 
 
@@ -126,9 +137,18 @@ def forces(physics: Physics, q: Array, frame: int) -> Array:
 
     A point mass there under gravity along an axis weighs just that; the drive holds against it.
     """
+    return _weights(physics, q, frame, 0)
+
+
+def levers(physics: Physics, q: Array, frame: int) -> Array:
+    """Return by how much `forces` change, (T, N, 3, 3), Nm/N/m, further along the link's axes."""
+    return np.stack([_weights(physics, q, frame, k) for k in (1, 2, 3)], axis=3)
+
+
+def _weights(physics: Physics, q: Array, frame: int, moment: int) -> Array:
     still = np.zeros_like(q)
     along = [
-        -g.regressor.combined("beta", g.points[:, frame - 1] / physics.strength, q=q, qd=still)
+        -g.regressor.combined("beta", g.points[:, frame - 1, moment] / physics.strength, q=q, qd=still)
         for g in physics.axes
     ]
     return np.stack(along, axis=2)

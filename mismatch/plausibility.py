@@ -23,6 +23,8 @@ _WHOLE, _AHEAD = 0.8, 1.7
 _LEAST_GAP = 0.3
 #: Nm/rad; a third of the catalogue's softest gear.
 SOFTEST = 1e3
+#: A rotor is there: it may have lost this part of its published inertia.
+LOST = 0.6
 
 
 def implausible(evidence: Evidence, test: Scored) -> str:
@@ -32,6 +34,10 @@ def implausible(evidence: Evidence, test: Scored) -> str:
         return f"moves the arm {times:.2g} times as much as such a gap does"
     if c.effect == "joint_elasticity" and test.size[0] * SOFTEST > 1:
         return f"a stiffness of {1 / test.size[0]:.0f} Nm/rad is no gear's"
+    if c.effect == "rotor_inertia" and c.joint is not None:
+        whole = evidence.setup.physics.reflected[c.joint]
+        if whole > 0 and test.size[0] < -LOST * whole:
+            return f"takes {-100 * test.size[0] / whole:.0f} % of the rotor's inertia away"
     if c.effect in AT_REVERSALS and c.joint is not None:
         level = evidence.setup.friction[c.joint, 0]
         least = _PART_WITHIN if is_short(c) else AT_REVERSALS[c.effect]

@@ -14,7 +14,7 @@ from .acceptance import EVIDENCE
 from .episodes import MOST, Episode, episodes, loudness
 from .evidence import Evidence, renewed, residual, weighed
 from .judging import Judged
-from .physics import Physics, fitted_force, forces
+from .physics import Physics, fitted_force, forces, levers
 from .refit import observed_runs, parameters
 from .rows import Rows, kept
 from .selection import Directions
@@ -22,15 +22,19 @@ from .selection import Directions
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-#: Share of the joints' squared residuals that one force must explain; N; the force's mean over its mean size:
-#: a push keeps its direction, what a wrong delay leaves at jerks does not.
-FORCE, STRONGEST, WEAKEST, AIMED = 0.8, 500.0, 1.0, 0.5
+#: Share of the joints' squared residuals that one force must explain at a frame's origin, and where its place
+#: on the link is fitted as well; N.
+FORCE, PLACED, STRONGEST, WEAKEST = 0.8, 0.95, 500.0, 1.0
+#: The force's mean over its mean size: a push keeps its direction, what a delay leaves at jerks does not.
+AIMED = 0.5
 #: Mean squared residual over noise of a joint that a force reaches.
 LOUD = 10.0
 #: Share of what comes and goes that pushes make, and those of them that reach two joints loudly.
 NEARLY, HALF = 0.8, 0.5
 #: Nats; rounds of finding the quiet rows; s around a push in which it may have begun and ended.
 _LEAST, _ROUNDS, _AROUND = 10 * EVIDENCE, 6, 0.5
+#: m; how far from a frame's origin a link or what it holds is touched, usually and at most; rounds.
+_GRIP, _REACH, _PLACES = 0.1, 0.3, 20
 
 
 @dataclass(frozen=True)
@@ -106,18 +110,16 @@ def contact(
 
     At least half of it has to reach two joints loudly: one joint alone is no push.
 
-    left: residuals (n, N) by run; sigma (N,) Nm: noise of the joints. Each push has a link of its own. A
-    force has three components and the joints are six, so that what is no force leaves most of itself.
+    left: residuals (n, N) by run; sigma (N,) Nm: noise of the joints. Each push has a link of its own, and a
+    place on it that stays. A force has three components and the joints are six, so that what is no force
+    leaves most of itself.
     """
     pushes, strong, most = list[Episode](), 0.0, 0.0
     for e in found:
-        share, force, aimed = max(
-            _force(physics, runs[e.run].q[e.rows], left[e.run][e.rows], sigma, frame)
-            for frame in range(3, physics.dof + 1)
-        )
-        if share > FORCE and WEAKEST < force < STRONGEST and aimed > AIMED:
+        force = _force(physics, runs[e.run].q[e.rows], left[e.run][e.rows] / sigma, sigma)
+        if force and WEAKEST < force.size < STRONGEST and force.aimed > AIMED:
             pushes.append(e)
-            most = max(most, force)
+            most = max(most, force.size)
             strong += e.worth if np.sum(e.strength > LOUD) >= 2 else 0.0
     total = sum(e.worth for e in found)
     nearly = sum(e.worth for e in pushes) > NEARLY * total and strong > HALF * total
@@ -147,16 +149,50 @@ def _left_by_quiet(evidence: Evidence, model: Directions) -> list[Array]:
     return left
 
 
-def _force(physics: Physics, q: Array, left: Array, sigma: Array, frame: int) -> tuple[float, float, float]:
-    """Return the share of residuals (n, N) that a force at a frame's origin explains, and its size, N.
+@dataclass(frozen=True)
+class _Force:
+    """A force that is fitted instant by instant: the share that it explains, its median size, N.
 
-    Last, its mean over its mean size: 1 where it keeps its direction.
+    aimed: its mean over its mean size, 1 where it keeps its direction.
     """
-    columns = forces(physics, q, frame) / sigma[:, None]  # (n, N, 3)
-    target = left / sigma
+
+    share: float
+    size: float
+    aimed: float
+
+
+def _force(physics: Physics, q: Array, target: Array, sigma: Array) -> _Force | None:
+    """Return the one force that explains residuals (n, N) in units of the noise sigma (N,), or None.
+
+    It acts at the origin of a link's frame, or at a place on the link that is found with it.
+    """
+    links = range(3, physics.dof + 1)
+    at = {k: forces(physics, q, k) / sigma[:, None] for k in links}  # (n, N, 3)
+    best = max((_fitted(columns, target) for columns in at.values()), key=lambda f: f.share)
+    if best.share > FORCE:
+        return best
+    moved = {k: levers(physics, q, k) / sigma[:, None, None] for k in links}  # (n, N, 3, 3)
+    placed = [at[k] + arms @ _place(at[k], arms, target) for k, arms in moved.items()]
+    best = max((_fitted(columns, target) for columns in placed), key=lambda f: f.share)
+    return best if best.share > PLACED else None
+
+
+def _fitted(columns: Array, target: Array) -> _Force:
     force = fitted_force(columns, target)
     rest = float(np.sum((target - np.einsum("tji,ti->tj", columns, force)) ** 2))
-    share = 1 - rest / max(float(np.sum(target**2)), 1e-12)
     size = np.linalg.norm(force, axis=1)
     aimed = float(np.linalg.norm(force.mean(axis=0)) / max(float(size.mean()), 1e-12))
-    return share, float(np.median(size)), aimed
+    return _Force(1 - rest / max(float(np.sum(target**2)), 1e-12), float(np.median(size)), aimed)
+
+
+def _place(columns: Array, arms: Array, target: Array) -> Array:
+    """Return where on a link (3,), m from its frame's origin, a force explains residuals best."""
+    place = np.zeros(3)
+    for _ in range(_PLACES):  # force and place in turn
+        force = fitted_force(columns + arms @ place, target)
+        turned = np.einsum("tjia,ti->tja", arms, force)
+        beyond = target - np.einsum("tji,ti->tj", columns, force)
+        gram = np.einsum("tja,tjb->ab", turned, turned) + np.eye(3) / _GRIP**2
+        place = np.linalg.solve(gram, np.einsum("tja,tj->a", turned, beyond))
+        place *= min(1.0, _REACH / max(float(np.linalg.norm(place)), 1e-12))
+    return place

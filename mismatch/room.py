@@ -82,7 +82,7 @@ def heights(physics: Physics, home: Array, q: Array) -> Array:
     is integrated on the straight line from home (Gauss and Legendre), so that no kinematics is written anew.
     """
     upward = physics.axes[2]
-    points = upward.points[:, min(1, physics.dof - 1) :] / physics.strength  # (B, F)
+    points = upward.points[:, min(1, physics.dof - 1) :, 0] / physics.strength  # (B, F)
     way = q - home
     share = 0.5 * (_NODES + 1)
     line = (home + share[:, None, None] * way).reshape(-1, len(home))  # (24 T, N)

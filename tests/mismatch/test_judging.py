@@ -154,3 +154,13 @@ def test_no_gear_is_softer_than_a_gear(stiffness, believed) -> None:
     test = Scored(soft, np.ones(4), 50.0, np.array([1 / stiffness]), np.ones(1))
     evidence = SimpleNamespace(setup=SimpleNamespace(friction=np.ones((1, 2))), has_reference=True)
     assert (implausible(evidence, test) == "") == believed
+
+
+@pytest.mark.parametrize(
+    ("published", "change", "believed"), [(2.0, -0.8, True), (2.0, -1.7, False), (0.0, -1.7, True)]
+)
+def test_a_rotor_does_not_lose_nearly_all_of_its_inertia(published, change, believed) -> None:
+    test = Scored(Candidate("rotor_inertia", 0, (0,)), np.ones(4), 50.0, np.array([change]), np.ones(1))
+    physics = SimpleNamespace(reflected=np.array([published]))
+    evidence = SimpleNamespace(setup=SimpleNamespace(physics=physics, friction=np.ones((1, 2))))
+    assert (implausible(evidence, test) == "") == believed

@@ -7,10 +7,11 @@ from rows_by_hand import STEP, ar1, rows
 from residuum.mismatch import Task, explain
 from residuum.mismatch.episodes import episodes
 from residuum.mismatch.grams import Scales
-from residuum.mismatch.physics import forces
+from residuum.mismatch.physics import forces, levers, physics_of
 from residuum.mismatch.pushes import contact
 from residuum.mismatch.rows import kept
 from residuum.robots import load_robot
+from residuum.symbolic.nominal import nominal_model
 
 LONG = 3600
 SCALES = Scales(np.tile([0.3, 0.6, 0.9], (3, 1)), np.full(3, 4.0), np.full(3, np.inf))
@@ -33,6 +34,20 @@ def test_a_push_is_one_force(arm) -> None:
     assert force is not None
     assert force.pushes == (episode,)
     assert force.force == pytest.approx(np.linalg.norm([20, 10, 30]), rel=0.2)
+
+
+def test_a_push_far_from_any_frame_is_one_force() -> None:
+    """At a tool's tip the same force has moments that none at the flange has."""
+    robot, digest = load_robot("ur5e")
+    physics, run = physics_of(nominal_model(robot, digest, 6), robot), rows(LONG, 6)
+    scales = Scales(np.tile([0.3, 0.6, 0.9], (6, 1)), np.full(6, 4.0), np.full(6, np.inf))
+    left = 0.3 * ar1(LONG, 0.6, np.random.default_rng(1), 6)
+    tip = forces(physics, run.q[PUSH], 6) + levers(physics, run.q[PUSH], 6) @ np.array([0.1, 0.2, -0.1])
+    left[PUSH] += tip @ np.array([-20.0, 10.0, 30.0])
+    some = episodes([run], [0], [left], scales, np.zeros(6))
+    force = contact(some, [run], {0: left}, physics, scales.sigma[:, 0])
+    assert force is not None
+    assert force.force == pytest.approx(np.linalg.norm([20, 10, 30]), rel=0.1)
 
 
 def test_a_single_joint_is_no_contact(arm) -> None:

@@ -6,7 +6,7 @@ import pytest
 from terms_by_hand import torque_by_hand
 
 from residuum.mismatch.columns import WIDTH
-from residuum.mismatch.physics import forces, tilts
+from residuum.mismatch.physics import forces, levers, tilts
 from residuum.mismatch.rows import DELAYS, make_rows
 from residuum.mismatch.track import calm_speeds
 from residuum.robots import load_robot
@@ -140,13 +140,14 @@ def test_a_force_needs_the_torque_of_mujocos_jacobian(arm) -> None:
     data = mujoco.MjData(model)
     for frame in (1, 2, 3):
         q = rng.uniform(-2, 2, (5, 3))
-        found = forces(arm.physics, q, frame)
+        away = rng.uniform(-0.2, 0.2, 3)  # m, from the frame's origin along the axes of the link
+        found = forces(arm.physics, q, frame) + levers(arm.physics, q, frame) @ away
         for k, pose in enumerate(q):
             data.qpos[:] = 0.0
             data.qpos[:3] = pose
             mujoco.mj_forward(model, data)
             body = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_BODY, f"link_{frame}")
-            point = data.xpos[body] + data.xmat[body].reshape(3, 3) @ link_frame(robot, frame)[1]
+            point = data.xpos[body] + data.xmat[body].reshape(3, 3) @ (link_frame(robot, frame)[1] + away)
             jacobian = np.zeros((3, model.nv))
             mujoco.mj_jac(model, data, jacobian, None, point, body)
             np.testing.assert_allclose(found[k], -jacobian[:, :3].T, atol=1e-9)
