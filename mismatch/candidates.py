@@ -122,10 +122,13 @@ def candidates(
     tilt = [add(unit[space.common_index(x)], common_std["tilt"]) for x in ("roll", "pitch")]
     each.append(Candidate("base_tilt", None, tuple(tilt)))
     for k, delay in enumerate(DELAYS):
-        both = [
-            add(unit[space.common_index(f"{x}{k + 1}")], common_std["delay"]) for x in ("delay", "reversal")
-        ]
-        each.append(Candidate("time_delay", None, tuple(both), (("around", delay),)))
+        steady, late, swift = (
+            add(unit[space.common_index(f"{x}{k + 1}")], common_std["delay"])
+            for x in ("delay", "reversal", "jerk")
+        )
+        for jerk, torque in ((0.0, steady), (1.0, swift)):
+            values = ("around", delay), ("jerk", jerk)
+            each.append(Candidate("time_delay", None, (torque, late), values))
     for name, effect in ((FROZEN, "frozen_joint_coupling"), (DROPPED, "dropped_coupling")):
         if name in space.common:
             at = add(unit[space.common_index(name)], common_std["lacking"])

@@ -26,7 +26,7 @@ Flags = NDArray[np.bool_]
 #: on the link is fitted as well; N.
 FORCE, PLACED, STRONGEST, WEAKEST = 0.8, 0.95, 500.0, 1.0
 #: The force's mean over its mean size: a push keeps its direction, what a delay leaves at jerks does not.
-AIMED = 0.5
+AIMED = 0.7
 #: Mean squared residual over noise of a joint that a force reaches.
 LOUD = 10.0
 #: Share of what comes and goes that pushes make, and those of them that reach two joints loudly.

@@ -202,7 +202,9 @@ def _shared_terms(
     """
     space, c = evidence.setup.space, a.score.candidate
     if c.effect == "time_delay":
-        at = space.common_index(f"delay{DELAYS.index(c.values[0][1]) + 1}")
+        value = dict(c.values)
+        kind = "jerk" if value["jerk"] else "delay"
+        at = space.common_index(f"{kind}{DELAYS.index(value['around']) + 1}")
         for j in range(space.dof):
             yield "delay", j, {"d": (full[at], std[at])}
     if c.effect == "joint_elasticity" and c.joint is not None:

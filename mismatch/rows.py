@@ -147,9 +147,8 @@ def _common(track: Track, part: slice, setup: Setup) -> tuple[Array, Array]:
     for k in range(2):
         moved.append(np.zeros_like(load))
         kept.append(turned[:, :, k])
-    body = track.steady[part]
     # what friction does at reversals depends on more than the clock, so it gets a coefficient of its own
-    for torque in (body, _torque(track, part, setup) - track.motor[part]):
+    for torque in (track.steady[part], _torque(track, part, setup) - track.motor[part], track.swift[part]):
         for delay in DELAYS:
             moved.append(np.zeros_like(load))
             kept.append((between(np.maximum(t - delay, t[0]), t, torque) - torque) / delay)
@@ -167,7 +166,7 @@ def common_names(dof: int, lacking: Sequence[Lacking] = ()) -> tuple[str, ...]:
         *per_joint,
         "roll",
         "pitch",
-        *(f"{x}{k + 1}" for x in ("delay", "reversal") for k in range(len(DELAYS))),
+        *(f"{x}{k + 1}" for x in ("delay", "reversal", "jerk") for k in range(len(DELAYS))),
         *(x.name for x in lacking),
     )
 

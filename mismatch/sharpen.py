@@ -27,7 +27,7 @@ def sharpened(evidence: Evidence, judged: Judged) -> dict[int, Sharp]:
     found: dict[int, Sharp] = {}
     for k, a in enumerate(judged.accepted):
         c = a.score.candidate
-        if not (free := [n for n, _ in c.values if n not in ("width", "n", "around")]):
+        if not (free := [n for n, _ in c.values if n not in ("width", "n", "around", "jerk")]):
             continue
         same = [x for x in of_key(evidence.found.each, c.key) if x.terms == c.terms]
         if len(same) < 3:

@@ -38,8 +38,8 @@ _SLOPE_RATE = 100.0
 #: s; wind-up and delay are sought in torques no faster than this: noise of the acceleration is in the
 #: torque's error, too, and would pass for them (errors in variables).
 CALM = 0.04
-#: s; a delay in faster ones where noise is at most this share of their changes' squares: smoothing takes
-#: the edges off jerks, which tell most of a delay.
+#: s; a delay in faster ones, too, where noise is at most this share of their changes' squares: smoothing
+#: takes the edges off jerks, which may tell most of a delay.
 QUICKER, NOISE = (0.02, 0.01), 0.03
 
 
@@ -85,7 +85,8 @@ class Track:
     """A recording's samples, joints of the model only: (T, N).
 
     load: torque (Nm) that the gear carries; calm: without what is faster than CALM, load_rate: calm's
-    rate; motor: load with the rotor's own inertia; steady: motor without what is faster (`_steady`).
+    rate; motor: load with the rotor's own inertia; steady: motor without what is faster than CALM; swift:
+    motor without what is faster still.
     moving: passing through zero speed is no rest.
     """
 
@@ -99,6 +100,7 @@ class Track:
     load_rate: Array
     motor: Array
     steady: Array
+    swift: Array
     since: Array
     moving: NDArray[np.bool_]
     beyond: Array  # (T, L, 2 N): momentum and beta that the model lacks by its form
@@ -148,13 +150,13 @@ def _known(track: Track, setup: Setup) -> Array:
 
 def _load(
     time: Array, q: Array, qd: Array, setup: Setup, kernel: Kernel, rate: float
-) -> tuple[Array, Array, Array, Array, Array]:
-    """Return load, calm, load_rate, motor and steady of a `Track`, each (T, N), by the setup's base."""
+) -> tuple[Array, Array, Array, Array, Array, Array]:
+    """Return load, calm, load_rate, motor, steady and swift of a `Track`, each (T, N), by the setup."""
     columns, n = setup.physics.regressor, setup.physics.dof
     momentum = columns.combined("momentum", setup.base, q=q, qd=qd)
     rotors = columns.combined("momentum", setup.physics.rotors, q=q, qd=qd)
     beta = columns.combined("beta", setup.base, q=q, qd=qd)
-    load, calm, slope, motor, steady = (np.zeros_like(q) for _ in range(5))
+    load, calm, slope, motor, steady, swift = (np.zeros_like(q) for _ in range(6))
     filtering, step = Filter(kernel), 1 / (4 * kernel.cutoff)
     for stretch in segments(time, GAP / rate):
         own = time[stretch]
@@ -169,14 +171,16 @@ def _load(
         motor[stretch] = between(own, at, coarse[:, :n]) - beta[stretch]
         load[stretch] = between(own, at, geared) - beta[stretch]
         still = between(at, own, beta[stretch])
-        steady[stretch] = between(own, at, _steady(coarse[:, :n] - still, step))
+        whole = coarse[:, :n] - still
+        steady[stretch] = between(own, at, gaussian_filter1d(whole, CALM / step, axis=0))
+        swift[stretch] = between(own, at, _swift(whole, step))
         total = gaussian_filter1d(geared - still, CALM / step, axis=0)
         calm[stretch] = between(own, at, total)
         slope[stretch] = between(own, at, np.gradient(total, step, axis=0))
-    return load, calm, slope, motor, steady
+    return load, calm, slope, motor, steady, swift
 
 
-def _steady(torque: Array, step: float) -> Array:
+def _swift(torque: Array, step: float) -> Array:
     """Return torques (K, N) at a step (s) without what is faster than CALM, or less where noise allows it.
 
     What smoothing takes off is noise in most instants and motion in some: its median tells the noise.

@@ -39,7 +39,12 @@ def test_a_push_is_one_force(arm) -> None:
 def test_a_push_far_from_any_frame_is_one_force() -> None:
     """At a tool's tip the same force has moments that none at the flange has."""
     robot, digest = load_robot("ur5e")
-    physics, run = physics_of(nominal_model(robot, digest, 6), robot), rows(LONG, 6)
+    physics, waves = (
+        physics_of(nominal_model(robot, digest, 6), robot),
+        np.outer(STEP * np.arange(LONG), np.ones(6)),
+    )
+    home = np.array([0.0, -1.4, 1.3, -1.5, -1.5, 0.0])
+    run = rows(LONG, 6, q=home + 0.5 * np.sin(waves + np.arange(6)))
     scales = Scales(np.tile([0.3, 0.6, 0.9], (6, 1)), np.full(6, 4.0), np.full(6, np.inf))
     left = 0.3 * ar1(LONG, 0.6, np.random.default_rng(1), 6)
     tip = forces(physics, run.q[PUSH], 6) + levers(physics, run.q[PUSH], 6) @ np.array([0.1, 0.2, -0.1])
