@@ -70,6 +70,8 @@ _PLAIN = {
     "presliding": "presliding_hysteresis", "lag": "velocity_lag", "ripple": "torque_ripple",
     "gain": "drive_gain", "asymmetric": "friction_asymmetry", "offset": "current_offset",
 }  # fmt: skip
+#: What a term cannot be told without: where a spring rests, friction where its temperature changes nothing.
+_BESIDE = {"spring": ("offset",), "temperature_dependent": ("coulomb", "viscous")}
 #: Whose coefficient cannot be negative when nothing was known of it before.
 _POSITIVE = ("presliding", "lag", "load_dependent", "stribeck", "spring")
 
@@ -84,12 +86,14 @@ class Candidates:
 
 
 def candidates(
-    space: Space, physics: Physics, own_std: Array, common_std: dict[str, float], base_std: Array, load: Array
-) -> Candidates:
+    space: Space, physics: Physics, own_std: Array, common_std: dict[str, float], base_std: Array,
+    load: Array, changed: bool,
+) -> Candidates:  # fmt: skip
     """Return every hypothesis of the catalogue that is a column or an inertial direction.
 
     own_std (N, K): prior width of each own column; base_std (B,): of a base parameter. load (N, 2): range of
-    what each gear carries, Nm; a load that does not reverse shows no slack.
+    what each gear carries, Nm; a load that does not reverse shows no slack. changed: sought is what changed
+    since a reference: friction that came to depend on temperature is the old one at a temperature unknown.
     """
     vectors, std, each = list[Array](), list[float](), list[Candidate]()
 
@@ -113,8 +117,9 @@ def candidates(
         for (term, values), columns in groups.items():
             if dict(values).get("zs", SHORT) < SHORT:
                 continue
-            constant = groups["offset", ()] if term == "spring" else []
-            each.append(Candidate(_PLAIN[term], j, (*columns, *constant), values, (term,), term in _POSITIVE))
+            with_it = _BESIDE.get(term, ()) if changed or term == "spring" else ()
+            beside = [x for (t, _), some in groups.items() if t in with_it for x in some]
+            each.append(Candidate(_PLAIN[term], j, (*columns, *beside), values, (term,), term in _POSITIVE))
     for kind, effect in (("encoder", "encoder_offset"), ("elasticity", "joint_elasticity")):
         for j in range(space.dof):
             at = add(unit[space.common_index(f"{kind}{j + 1}")], common_std[kind])

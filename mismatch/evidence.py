@@ -106,7 +106,8 @@ def gather(
     common_std = {
         "encoder": 0.05, "elasticity": 1e-3, "tilt": 0.2, "delay": 0.05, "lacking": SHARE,
     }  # fmt: skip
-    found = candidates(setup.space, physics, own_std, common_std, base_std, limits.load)
+    changed = not all(sides)
+    found = candidates(setup.space, physics, own_std, common_std, base_std, limits.load, changed)
     progress("noise")
     none = equal_scales(physics.dof)
     return renewed(Evidence(setup, (), tuple(sides), none, (), found, base_std, torque, own_std), runs)
