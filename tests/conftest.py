@@ -1,5 +1,7 @@
 """What all tests share: models, generated trees, and the real recordings when they are there."""
 
+import signal
+import threading
 from functools import cache
 from pathlib import Path
 
@@ -10,6 +12,11 @@ from residuum.robots import load_robot
 from residuum.symbolic.nominal import nominal_model
 
 RECORDINGS = Path(__file__).resolve().parents[2] / "shared" / "recordings"
+
+
+if threading.current_thread() is threading.main_thread():
+    # shells start background jobs with Ctrl-C ignored, and so would the commands that are tested be started
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
