@@ -1,7 +1,7 @@
 """Concealed cases from robots whose physics is not ours, in the files of a trial.
 
 python benchmarks/other_physics.py --cases 60 --seed 1 --out foreign --workers 2
-residuum trial --cases 24 --seed 1 --out foreign --stage answer --stage score --workers 2
+residuum trial --cases 60 --seed 1 --out foreign --stage answer --stage score --workers 2
 
 The robots are MuJoCo's: friction is what its constraint solver holds, the controller a plain PD with
 feed-forward. A quarter is clean, half have a reference, rates are 125 and 500 Hz. The size in the tables is the rms
