@@ -98,8 +98,7 @@ def cases(
     """Draw every effect at every size, on joints at random; whole: sizes are those of all of it."""
     rng, found = np.random.default_rng(seed), []
     sight = _Sight(evidence, left, whole)
-    possible = {name: _possible(evidence, name, sight) for name in SHARED}
-    shared = {name: some for name, some in possible.items() if some}
+    shared = {name: some for name in SHARED if (some := _possible(evidence, name, sight))}
     joints = range(evidence.setup.space.dof)
     ratios = {
         name: np.array([[sight.ratio(_only(runs, j)) for j in joints] for runs in by_value])

@@ -30,7 +30,7 @@ from residuum.trials.families import ON_A_JOINT
 from residuum.trials.files import write_json
 from residuum.trials.pool import pool
 from residuum.trials.sealing import seal
-from residuum.trials.sizing import gains, low_pass
+from residuum.trials.sizing import MOVING, beside_friction, gains, low_pass
 
 Array = NDArray[np.float64]
 
@@ -108,11 +108,10 @@ def sizes(
     for j in range(6):
         whole = np.concatenate([c[:, j] for c in change])
         qd = np.concatenate([r.qd[:, j] for r in before if r.qd is not None])
-        moving = np.abs(qd) > 0.01
-        change_rms[j] = np.sqrt(np.mean(whole[moving] ** 2)) if moving.any() else 0.0
-        plain = np.stack([np.ones_like(qd), np.sign(qd), qd], axis=1)[moving]
-        left = whole[moving] - plain @ np.linalg.lstsq(plain, whole[moving], rcond=None)[0]
-        beside[j] = np.sqrt(np.mean(left**2)) / max(change_rms[j], 1e-12) if moving.any() else 1.0
+        moving = np.abs(qd) > MOVING
+        if whole[moving].any():
+            change_rms[j] = np.sqrt(np.mean(whole[moving] ** 2))
+            beside[j] = beside_friction(qd[moving], whole[moving])
     return change_rms / level, beside
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from ..symbolic.terms import CATALOGUE
-from .columns import GAPS, GRIDS, ORDERS, SHORT, SLACK, SOFT, TERMS, WIDTH, Column, Space
+from .columns import BASELINE, GAPS, GRIDS, ORDERS, SHORT, SLACK, SOFT, TERMS, WIDTH, Column, Space
 from .flexible import names as curve_names
 from .lacking import DROPPED, FROZEN
 from .physics import Physics
@@ -103,6 +103,7 @@ def candidates(
         return len(vectors) - 1
 
     unit = np.eye(space.size)
+    fitted = set() if changed else set(BASELINE)  # what is free anyway
     for j in range(space.dof):
         groups: dict[tuple[str, tuple[tuple[str, float], ...]], list[int]] = {}
         for k, c in enumerate(space.own):
@@ -117,7 +118,7 @@ def candidates(
         for (term, values), columns in groups.items():
             if dict(values).get("zs", SHORT) < SHORT:
                 continue
-            with_it = _BESIDE.get(term, ()) if changed or term == "spring" else ()
+            with_it = set(_BESIDE.get(term, ())) - fitted
             beside = [x for (t, _), some in groups.items() if t in with_it for x in some]
             each.append(Candidate(_PLAIN[term], j, (*columns, *beside), values, (term,), term in _POSITIVE))
     for kind, effect in (("encoder", "encoder_offset"), ("elasticity", "joint_elasticity")):

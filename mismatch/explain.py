@@ -160,8 +160,9 @@ def _proved(
     t: _Told, weighed: Evidence, baseline: Directions, whole: Directions
 ) -> tuple[Proof, LeftOut, LeftOut]:
     """Prove on the rows without pushes; what both models leave is of all rows."""
-    seen = released(t.recorded, t.push) if t.push else t.recorded
-    first = reweighed(seen, baseline) if t.load else weighed
+    first = weighed
+    if t.load:
+        first = reweighed(released(t.recorded, t.push) if t.push else t.recorded, baseline)
     proof, before, after = prove(weighed, baseline, whole, first)
     if t.push is None:
         return proof, before, after

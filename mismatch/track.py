@@ -172,20 +172,21 @@ def _load(
         load[stretch] = between(own, at, geared) - beta[stretch]
         still = between(at, own, beta[stretch])
         whole = coarse[:, :n] - still
-        steady[stretch] = between(own, at, gaussian_filter1d(whole, CALM / step, axis=0))
-        swift[stretch] = between(own, at, _swift(whole, step))
+        slow = gaussian_filter1d(whole, CALM / step, axis=0)
+        steady[stretch] = between(own, at, slow)
+        swift[stretch] = between(own, at, _swift(whole, slow, step))
         total = gaussian_filter1d(geared - still, CALM / step, axis=0)
         calm[stretch] = between(own, at, total)
         slope[stretch] = between(own, at, np.gradient(total, step, axis=0))
     return load, calm, slope, motor, steady, swift
 
 
-def _swift(torque: Array, step: float) -> Array:
-    """Return torques (K, N) at a step (s) without what is faster than CALM, or less where noise allows it.
+def _swift(torque: Array, calm: Array, step: float) -> Array:
+    """Return calm torques (K, N) at a step (s), or those that lack less of the whole where noise allows it.
 
     What smoothing takes off is noise in most instants and motion in some: its median tells the noise.
     """
-    calm = found = gaussian_filter1d(torque, CALM / step, axis=0)
+    found = calm
     for width in QUICKER:
         quick = gaussian_filter1d(torque, width / step, axis=0)
         noise = 1.4826 * np.median(np.abs(np.diff(quick - calm, axis=0)), axis=0)

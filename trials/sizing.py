@@ -81,10 +81,15 @@ def survives(robot: Robot, affected: Sequence[Run], healthy: Sequence[Run], rate
         y = np.concatenate([c[m[:, j], j] for c, m in zip(change, moving, strict=True)])
         if len(y) < 10 or not y.any():
             continue
-        x = np.column_stack([np.ones_like(speed), np.sign(speed), speed])
-        rest = y - x @ np.linalg.lstsq(x, y, rcond=None)[0]
-        left[j] = float(np.linalg.norm(rest) / np.linalg.norm(y))
+        left[j] = beside_friction(speed, y)
     return left
+
+
+def beside_friction(speed: Array, torque: Array) -> float:
+    """Return the share of a torque's rms (T,) that an offset, Coulomb and viscous friction do not take."""
+    x = np.column_stack([np.ones_like(speed), np.sign(speed), speed])
+    rest = torque - x @ np.linalg.lstsq(x, torque, rcond=None)[0]
+    return float(np.linalg.norm(rest) / np.linalg.norm(torque))
 
 
 def _misfits(runs: Sequence[Run], rate: float) -> list[Array]:

@@ -1,7 +1,7 @@
 """What is hidden in foreign robots: each effect drawn at random, within the plausible sizes of the catalogue."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,7 +87,7 @@ def cable_spring(s: Scene) -> Change:
 
 def encoder_offset(s: Scene) -> Change:
     """A wrong zero, of a joint that gravity acts on."""
-    s = Scene(s.rng, s.robot, s.healthy, int(s.rng.integers(1, 4)))
+    s = replace(s, joint=int(s.rng.integers(1, 4)))
     angle = s.sign * np.radians(s.rng.uniform(0.4, 2.0))
     return s.on_joint("encoder_offset", {"offset": angle}, encoder=s.only(angle))
 
@@ -108,7 +108,7 @@ def nonlinear_viscous(s: Scene) -> Change:
 
 def load_dependent_friction(s: Scene) -> Change:
     """Friction that grows with what the shoulder or the elbow carries."""
-    s = Scene(s.rng, s.robot, s.healthy, int(s.rng.integers(1, 3)))
+    s = replace(s, joint=int(s.rng.integers(1, 3)))
     mu = s.rng.uniform(0.03, 0.12)
     return s.on_joint(
         "load_dependent_friction", {"mu": mu}, dry=lambda _q, _qd, load, _hot: s.only(mu) * np.abs(load)

@@ -3,7 +3,8 @@
 import numpy as np
 
 from residuum.mismatch.columns import Column, Space
-from residuum.mismatch.grams import Fold
+from residuum.mismatch.episodes import episodes
+from residuum.mismatch.grams import Fold, Scales
 from residuum.mismatch.rows import Rows
 
 STEP = 1 / 60
@@ -34,6 +35,25 @@ def ar1(count: int, keep: float, rng, joints: int = 2):
     for k in range(1, count):
         found[k] = keep * found[k - 1] + np.sqrt(1 - keep**2) * drive[k]
     return found
+
+
+LONG, PUSH = 3600, slice(1200, 1500)
+
+
+def scales(joints: int = 3) -> Scales:
+    """Noise of 0.3 Nm in free motion, four rows to an independent one."""
+    return Scales(np.tile([0.3, 0.6, 0.9], (joints, 1)), np.full(joints, 4.0), np.full(joints, np.inf))
+
+
+def quiet(seed: int = 1, joints: int = 3):
+    """LONG residuals of that noise."""
+    return 0.3 * ar1(LONG, 0.6, np.random.default_rng(seed), joints)
+
+
+def found_in(left, run):
+    """The episodes in residuals of one run."""
+    joints = left.shape[1]
+    return episodes([run], [0], [left], scales(joints), np.zeros(joints))
 
 
 def small_space() -> Space:

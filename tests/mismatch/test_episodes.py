@@ -2,22 +2,9 @@
 
 import numpy as np
 import pytest
-from rows_by_hand import STEP, ar1, rows
+from rows_by_hand import LONG, PUSH, STEP, found_in, quiet, rows, scales
 
 from residuum.mismatch.episodes import episodes, involved
-from residuum.mismatch.grams import Scales
-
-LONG = 3600
-SCALES = Scales(np.tile([0.3, 0.6, 0.9], (3, 1)), np.full(3, 4.0), np.full(3, np.inf))
-PUSH = slice(1200, 1500)
-
-
-def quiet(seed: int = 1):
-    return 0.3 * ar1(LONG, 0.6, np.random.default_rng(seed), 3)
-
-
-def found_in(left, run):
-    return episodes([run], [0], [left], SCALES, np.zeros(3))
 
 
 def test_noise_alone_is_no_episode() -> None:
@@ -45,7 +32,7 @@ def test_at_rest_a_joint_holds_its_coulomb_level_without_anything_being_there() 
     left[1000:1600, 0] += 5.0
     run = rows(LONG, 3, moving=moving)
     assert found_in(left, run)
-    assert not episodes([run], [0], [left], SCALES, np.full(3, 6.0))
+    assert not episodes([run], [0], [left], scales(), np.full(3, 6.0))
 
 
 def test_pauses_belong_to_the_episode() -> None:

@@ -2,35 +2,22 @@
 
 import numpy as np
 import pytest
-from rows_by_hand import STEP, ar1, rows
+from rows_by_hand import LONG, PUSH, STEP, found_in, quiet, rows, scales
 
 from residuum.mismatch import Task, explain
-from residuum.mismatch.episodes import episodes
-from residuum.mismatch.grams import Scales
 from residuum.mismatch.physics import forces, levers, physics_of
 from residuum.mismatch.pushes import contact
 from residuum.mismatch.rows import kept
 from residuum.robots import load_robot
 from residuum.symbolic.nominal import nominal_model
 
-LONG = 3600
-SCALES = Scales(np.tile([0.3, 0.6, 0.9], (3, 1)), np.full(3, 4.0), np.full(3, np.inf))
-PUSH = slice(1200, 1500)
-
-
-def quiet(seed: int = 1):
-    return 0.3 * ar1(LONG, 0.6, np.random.default_rng(seed), 3)
-
-
-def found_in(left, run):
-    return episodes([run], [0], [left], SCALES, np.zeros(3))
-
 
 def test_a_push_is_one_force(arm) -> None:
     run, left = rows(LONG, 3), quiet()
     left[PUSH] += forces(arm.physics, run.q[PUSH], 3) @ np.array([-20.0, 10.0, 30.0])
     (episode,) = found_in(left, run)
-    force = contact([episode], [run], {0: left}, arm.physics, SCALES.sigma[:, 0])
+    assert episode.span == pytest.approx((PUSH.start * STEP, PUSH.stop * STEP), abs=0.3)
+    force = contact([episode], [run], {0: left}, arm.physics, scales().sigma[:, 0])
     assert force is not None
     assert force.pushes == (episode,)
     assert force.force == pytest.approx(np.linalg.norm([20, 10, 30]), rel=0.2)
@@ -39,18 +26,14 @@ def test_a_push_is_one_force(arm) -> None:
 def test_a_push_far_from_any_frame_is_one_force() -> None:
     """At a tool's tip the same force has moments that none at the flange has."""
     robot, digest = load_robot("ur5e")
-    physics, waves = (
-        physics_of(nominal_model(robot, digest, 6), robot),
-        np.outer(STEP * np.arange(LONG), np.ones(6)),
-    )
+    physics = physics_of(nominal_model(robot, digest, 6), robot)
+    waves = np.outer(STEP * np.arange(LONG), np.ones(6))
     home = np.array([0.0, -1.4, 1.3, -1.5, -1.5, 0.0])
     run = rows(LONG, 6, q=home + 0.5 * np.sin(waves + np.arange(6)))
-    scales = Scales(np.tile([0.3, 0.6, 0.9], (6, 1)), np.full(6, 4.0), np.full(6, np.inf))
-    left = 0.3 * ar1(LONG, 0.6, np.random.default_rng(1), 6)
+    left = quiet(joints=6)
     tip = forces(physics, run.q[PUSH], 6) + levers(physics, run.q[PUSH], 6) @ np.array([0.1, 0.2, -0.1])
     left[PUSH] += tip @ np.array([-20.0, 10.0, 30.0])
-    some = episodes([run], [0], [left], scales, np.zeros(6))
-    force = contact(some, [run], {0: left}, physics, scales.sigma[:, 0])
+    force = contact(found_in(left, run), [run], {0: left}, physics, scales(6).sigma[:, 0])
     assert force is not None
     assert force.force == pytest.approx(np.linalg.norm([20, 10, 30]), rel=0.1)
 
@@ -59,7 +42,7 @@ def test_a_single_joint_is_no_contact(arm) -> None:
     run, left = rows(LONG, 3), quiet()
     left[PUSH, 1] += 5.0
     (episode,) = found_in(left, run)
-    assert contact([episode], [run], {0: left}, arm.physics, SCALES.sigma[:, 0]) is None
+    assert contact([episode], [run], {0: left}, arm.physics, scales().sigma[:, 0]) is None
 
 
 def test_what_changes_its_direction_is_no_push(arm) -> None:
@@ -69,7 +52,7 @@ def test_what_changes_its_direction_is_no_push(arm) -> None:
     left[PUSH] += swing[:, None] * (forces(arm.physics, run.q[PUSH], 3) @ np.array([-20.0, 10.0, 30.0]))
     some = found_in(left, run)
     assert some
-    assert contact(some, [run], {0: left}, arm.physics, SCALES.sigma[:, 0]) is None
+    assert contact(some, [run], {0: left}, arm.physics, scales().sigma[:, 0]) is None
 
 
 def test_what_else_comes_and_goes_weakly_does_not_hide_a_push(arm) -> None:
@@ -77,7 +60,7 @@ def test_what_else_comes_and_goes_weakly_does_not_hide_a_push(arm) -> None:
     left[PUSH] += forces(arm.physics, run.q[PUSH], 3) @ np.array([-20.0, 10.0, 30.0])
     left[2400:2430, 0] += 1.5
     push, other = found_in(left, run)
-    force = contact([push, other], [run], {0: left}, arm.physics, SCALES.sigma[:, 0])
+    force = contact([push, other], [run], {0: left}, arm.physics, scales().sigma[:, 0])
     assert force is not None
     assert push in force.pushes
 
