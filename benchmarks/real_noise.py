@@ -49,7 +49,7 @@ FREE = (
 def answer(evidence: Evidence, known: Judged, with_it: Sequence[Array]) -> Candidate | None:
     """Return the first new finding in other torques (n, N) by run."""
     runs = tuple(replace(r, torque=x) for r, x in zip(evidence.runs, with_it, strict=True))
-    judged = judge(reweighed(replace(evidence, runs=runs), known.model), known=known, most=1)
+    judged = judge(renewed(evidence, runs), known=known, most=1)
     return next((a.score.candidate for a in judged.accepted if a.is_finding), None)
 
 

@@ -9,7 +9,21 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from ..symbolic.terms import CATALOGUE
-from .columns import BASELINE, GAPS, GRIDS, ORDERS, SHORT, SLACK, SOFT, TERMS, WIDTH, Column, Space
+from .columns import (
+    BASELINE,
+    GAPS,
+    GRIDS,
+    NO_PHYSICS,
+    ORDERS,
+    REPEAT,
+    SHORT,
+    SLACK,
+    SOFT,
+    TERMS,
+    WIDTH,
+    Column,
+    Space,
+)  # fmt: skip
 from .flexible import names as curve_names
 from .lacking import DROPPED, FROZEN
 from .physics import Physics
@@ -52,6 +66,7 @@ def own_columns(gear: float) -> tuple[Column, ...]:
     found += [Column("coulomb", "Fc", (("width", w),)) for w in SOFT]
     found += [Column(SLACK, "gap", (("gap", x),)) for x in GAPS]
     found += [Column("ripple", p, (("n", k * gear),)) for k in ORDERS for p in ("A", "B")]
+    found.append(Column(REPEAT, "rho"))
     return tuple(found)
 
 
@@ -107,7 +122,7 @@ def candidates(
     for j in range(space.dof):
         groups: dict[tuple[str, tuple[tuple[str, float], ...]], list[int]] = {}
         for k, c in enumerate(space.own):
-            if c.term != "curve" and not c.soft:
+            if c.term not in NO_PHYSICS and not c.soft:
                 at = add(unit[space.own_index(j, k)], own_std[j, k])
                 groups.setdefault((c.term, c.values), []).append(at)
         gaps = [groups.pop((SLACK, (("gap", x),)), []) for x in GAPS]

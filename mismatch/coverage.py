@@ -7,11 +7,14 @@ import numpy as np
 
 from ..recordings import Recording
 from .evidence import Evidence
+from .repeats import share
 
 #: s of motion below which nothing is named; rad of travel below which a joint stands.
 _SHORTEST, _TRAVEL = 5.0, 0.05
 #: Hz; below it reversals, delay and elasticity are out of sight.
 _SLOW = 60.0
+#: Share of the motion that has to be the reference's as well, for all that a reference can show.
+_SAME = 0.5
 
 
 @dataclass(frozen=True)
@@ -54,6 +57,11 @@ def cannot_show(evidence: Evidence, recordings: Sequence[Recording]) -> Lacks:
     if not evidence.has_reference:
         texts.append(
             "a drive gain or a load apart from the links' own masses, to better than the published masses"
+        )
+    elif moving and (same := share(runs, evidence.setup.space)) < _SAME:
+        texts.append(
+            f"changes as small as a reference on the same path would show: it holds {100 * same:.0f} % of"
+            " this motion"
         )
     if moving < _SHORTEST:
         texts.insert(0, f"{moving:.1f} s of motion are too few to name anything; record a minute or more")

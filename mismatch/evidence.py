@@ -13,11 +13,12 @@ from ..recordings import Recording
 from ..robots import Robot
 from ..robots.model import Model
 from .candidates import Candidates, candidates, curve_columns, own_columns
-from .columns import BASELINE, SLACK, WIDTH, Column, Space, space_of
+from .columns import BASELINE, REPEAT, SLACK, WIDTH, Column, Space, space_of
 from .flexible import ranges
 from .grams import Fold, Scales, equal_scales, folds_of, scales_of, whole
 from .lacking import SHARE, dropped_of, frozen_of, widths
 from .physics import physics_of
+from .repeats import repeated, views
 from .rows import Rows, common_names, make_rows
 from .selection import Sums
 from .track import Setup
@@ -102,7 +103,7 @@ def gather(
     runs = [make_rows(r, setup) for r in recordings]
     torque = np.sqrt(np.mean(np.concatenate([r.torque for r in runs]) ** 2, axis=0))
     own_std = 0.2 * _own_std(runs, setup.space, torque)
-    own_std[:, [c.term == SLACK for c in setup.space.own]] = 1.0  # the column is of the whole gap
+    own_std[:, [c.term in (SLACK, REPEAT) for c in setup.space.own]] = 1.0  # columns of the whole
     common_std = {
         "encoder": 0.05, "elasticity": 1e-3, "tilt": 0.2, "delay": 0.05, "lacking": SHARE,
     }  # fmt: skip
@@ -119,9 +120,27 @@ def renewed(evidence: Evidence, runs: Sequence[Rows]) -> Evidence:
     healthy = [r for r, o in zip(runs, sides, strict=True) if not o] or runs
     std = np.concatenate([evidence.base_std, evidence.own_std.ravel(), widths(space.common, 1e-12)])
     # noise is what the richest model leaves
-    _, scales = _fitted(healthy, space, evidence.setup.physics.published, std)
+    theta, scales = _fitted(healthy, space, evidence.setup.physics.published, std)
+    if evidence.has_reference:
+        runs = _repeating(evidence.setup, runs, sides, theta)
     folds = folds_of(runs, sides, scales, space)
     return replace(evidence, runs=tuple(runs), scales=scales, folds=tuple(folds), observed_scales=None)
+
+
+def _repeating(setup: Setup, runs: Sequence[Rows], observed: Sequence[bool], theta: Array) -> list[Rows]:
+    """Return rows whose column of repeats holds what parameters (P,) leave of the reference."""
+    space, level = setup.space, setup.friction[:, 0]
+    healthy = [r for r, o in zip(runs, observed, strict=True) if not o]
+    left, found = [residual(r, space, theta) for r in healthy], list[Rows]()
+    for rows, mine in zip(runs, observed, strict=True):
+        columns = rows.columns
+        if mine:
+            known = repeated(healthy, left, level, rows)
+            columns = tuple(x.copy() for x in columns)
+            for j, view in enumerate(views(columns, space)):
+                view[:] = known[:, j]
+        found.append(replace(rows, columns=columns))
+    return found
 
 
 def _states(runs: Sequence[Rows]) -> tuple[Array, Array, Array, Array]:

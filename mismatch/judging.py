@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from . import yardstick
 from .acceptance import EVIDENCE, STEADY, objection
 from .candidates import Candidate
 from .evidence import Evidence
@@ -114,6 +115,8 @@ def judge(
             or of_all_joints(weighed, model, test)
         )
         tries += 1
+        if not why and (why := yardstick.objection(weighed, model, test)):
+            model = evidence.found.directions.take(best.candidate.columns) + model  # or others explain it
         if why:
             refused.append((test, why))
             continue

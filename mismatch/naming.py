@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from .candidates import Candidate
-from .columns import BASELINE, Column, Space
+from .columns import BASELINE, REPEAT, Column, Space
 from .evidence import Evidence, residual, weighed
 from .grams import Scales, scales_of
 from .lacking import widths
 from .refit import observed_runs, parameters
+from .repeats import coefficients
 from .selection import Directions, Eliminated, eliminate, log_evidence
 
 Array = NDArray[np.float64]
@@ -125,7 +126,7 @@ def _rich(evidence: Evidence) -> Directions:
     # what heat does is the reference's own only where the reference shows it; else it explains anything
     terms = ["heat" if c.parameter == "temperature" else c.term for c in space.own]
     heated = {"heat", "temperature_dependent"}
-    free = set(BASELINE)
+    free = {*BASELINE, REPEAT}
 
     def model(share: float, wide: set[str]) -> Directions:
         width = np.array([1.0 if t in wide else BARE if t in heated else share for t in terms])
@@ -152,13 +153,21 @@ def reweighed(evidence: Evidence, model: Directions) -> Evidence:
         own = parameters(evidence, model)
         scales = scales_of(seen, [residual(r, space, own) for r in seen])
         if evidence.has_reference:
-            scales = Scales(
-                np.maximum(scales.sigma, evidence.scales.sigma),
-                np.maximum(scales.inflation, evidence.scales.inflation),
-                np.maximum(scales.fast, evidence.scales.fast),
-            )
+            own[coefficients(space)] = 0.0
+            alone = scales_of(seen, [residual(r, space, own) for r in seen])
+            scales = _no_less(scales, evidence.scales, scales.sigma / alone.sigma)
         evidence = weighed(evidence, scales)
     return evidence
+
+
+def _no_less(scales: Scales, reference: Scales, new: Array) -> Scales:
+    """Return scales no less than the reference's, but for what came back; new (N, 3): what did not of it."""
+    new = np.minimum(new, 1.0)
+    return Scales(
+        np.maximum(scales.sigma, new * reference.sigma),
+        np.maximum(scales.inflation, 1 + new[:, 0] * (reference.inflation - 1)),
+        np.maximum(scales.fast, reference.fast),
+    )
 
 
 def scored(evidence: Evidence, model: Directions, some: Sequence[Candidate]) -> list[Scored]:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..recordings import Recording
-from .columns import Indices, Space
+from .columns import NO_PHYSICS, Indices, Space
 from .evidence import Evidence
 from .experiments import Experiment, Step
 from .grams import Scales, folds_of, whole
@@ -33,12 +33,12 @@ class Lean:
 
 
 def lean(setup: Setup, used: Indices) -> Lean:
-    """Leave out own columns that no joint uses, and the flexible curve; used: places that matter (of P)."""
+    """Leave out own columns that no joint uses, and what is no physics; used: places that matter (of P)."""
     space, wanted = setup.space, set(used.tolist())
     kept = [
         k
         for k, c in enumerate(space.own)
-        if c.term != "curve" and any(space.own_index(j, k) in wanted for j in range(space.dof))
+        if c.term not in NO_PHYSICS and any(space.own_index(j, k) in wanted for j in range(space.dof))
     ]
     small = Space(space.dof, space.base, tuple(space.own[k] for k in kept), space.common, space.seen)
     own = [space.own_index(j, k) for j in range(space.dof) for k in kept]

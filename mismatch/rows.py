@@ -16,7 +16,7 @@ from ..identify.kernel import Filter, Kernel, batches, portions, segments
 from ..identify.rows import GAP, REST
 from ..recordings import Recording
 from . import signs
-from .columns import WIDTH, Space
+from .columns import REPEAT, WIDTH, Space
 from .fast import Fast, fast_band
 from .flexible import curves
 from .lacking import Lacking
@@ -102,6 +102,8 @@ def _own(track: Track, part: slice, setup: Setup) -> Array:
             found.append(-_torque(track, part, setup))
         elif c.term == "curve":
             continue
+        elif c.term == REPEAT:
+            found.append(np.zeros_like(direction))  # of what other recordings leave: evidence.py
         elif remembers(c.term):
             found.append(track.held[part, :, held])
             held += 1

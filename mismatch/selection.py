@@ -53,15 +53,30 @@ class Sums:
     def __init__(self, folds: Sequence[Fold], space: Space, mean: Array) -> None:
         """Mean (P,): torques count from columns @ mean."""
         self.space, self.observed = space, [f for f in folds if f.observed]
+        self._healthy = [f for f in folds if not f.observed]
         self._mean = mean
         self._each = [self._whole(f) for f in self.observed]
         zero = np.zeros((space.size + 1,) * 2)
-        self.reference = sum((self._whole(f) for f in folds if not f.observed), zero)
+        self.reference = sum((self._whole(f) for f in self._healthy), zero)
         self.total: Array = sum(self._each, zero)
 
     def without(self, k: int | None) -> Array:
         """Return the observed side's sum without its fold k."""
         return self.total if k is None else self.total - self._each[k]
+
+    def apart(self, enough: int) -> tuple[list[Array], list[Array]]:
+        """Return the sums of the reference's recordings and of the observed ones, each by itself.
+
+        Fold by fold, where the reference is fewer recordings than enough.
+        """
+        few = len({f.run for f in self._healthy}) < enough
+        return self._apart(self._healthy, few), self._apart(self.observed, few)
+
+    def _apart(self, folds: Sequence[Fold], one_by_one: bool) -> list[Array]:
+        groups = [[f] for f in folds]
+        if not one_by_one:
+            groups = [[f for f in folds if f.run == r] for r in dict.fromkeys(f.run for f in folds)]
+        return [np.sum([self._whole(f) for f in some], axis=0) for some in groups]
 
     def _whole(self, fold: Fold) -> Array:
         gram = whole(fold.grams, self.space)
@@ -123,15 +138,35 @@ def normal_equations(sums: Sums, model: Directions, seen: Array) -> tuple[Array,
     return np.asarray(a, np.float64), np.asarray(r, np.float64)
 
 
+@dataclass(frozen=True)
+class Fit:
+    """A model's normal equations, its prior in them: factor of the matrix (D, D), right side (D,)."""
+
+    model: Directions
+    factor: Any
+    right: Array
+
+
+def fit(sums: Sums, model: Directions, seen: Array) -> Fit:
+    """Fit a model to what is seen of the observed side and to the reference."""
+    a, r = normal_equations(sums, model, seen)
+    return Fit(model, cho_factor(a + np.diag(1 / model.std**2)), r)
+
+
 def eliminate(sums: Sums, model: Directions, candidates: Directions, left_out: int | None) -> Eliminated:
     """Fit a model without a fold of the observed side (None: with all), and eliminate it from candidates.
 
     Candidates are of the observed side only.
     """
     seen = sums.without(left_out)
-    a, r = normal_equations(sums, model, seen)
+    return eliminated(fit(sums, model, seen), seen, candidates)
+
+
+def eliminated(fitted: Fit, seen: Array, candidates: Directions) -> Eliminated:
+    """Eliminate a model from candidates that only the rows of a Gram matrix (P + 1, P + 1) have."""
+    model = fitted.model
     b = (model.vectors.T @ seen[:-1, :-1]) @ candidates.vectors
-    solved = cho_solve(cho_factor(a + np.diag(1 / model.std**2)), np.column_stack([b, r]))
+    solved = cho_solve(fitted.factor, np.column_stack([b, fitted.right]))
     reaction = candidates.vectors.toarray() - model.vectors @ solved[:, :-1]
     own = model.vectors @ solved[:, -1]
     right = candidates.vectors.T @ (seen[:-1, -1] - seen[:-1, :-1] @ own)
