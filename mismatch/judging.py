@@ -91,11 +91,12 @@ def judge(
     model = known.model if known else nuisance(evidence)
     skip = ("base_free",) if evidence.has_reference else UNSEEN
     accepted, refused = list[Accepted](), list[tuple[Scored, str]]()
-    barred, hollow = set[Key](), set[Key]()
+    barred, hollow, bent = set[Key](), set[Key](), list[int]()
     tries = 0
     while len(accepted) < most and tries < TRIES:
         progress(f"hypotheses, round {len(accepted) + 1}")
-        every = ranked(evidence, model, skip)
+        fitted = evidence.found.directions.take(bent) + model
+        every = ranked(evidence, fitted, skip)
         order = [s for s in every if s.candidate.key not in barred]
         if not order or order[0].evidence < EVIDENCE:
             break
@@ -105,22 +106,25 @@ def judge(
             hollow.add(best.candidate.key)
             refused.append((best, why))
             continue
-        test, weighed = tested(evidence, model, best.candidate)
+        test, weighed = tested(evidence, fitted, best.candidate)
         part = share_of(evidence, test)
         why = (
             objection(test, part)
             or implausible(evidence, test)
             or shadow(test, accepted, evidence.setup.space.dof)
-            or misshapen(weighed, model, test)
-            or of_all_joints(weighed, model, test)
+            or of_all_joints(weighed, fitted, test)
         )
         tries += 1
-        if not why and (why := yardstick.objection(weighed, model, test)):
-            model = evidence.found.directions.take(best.candidate.columns) + model  # or others explain it
+        # what is there without being a finding is fitted, or others would explain it
+        if not why:
+            why, curve = misshapen(weighed, fitted, test)
+            bent += curve
+        if not why and (why := yardstick.objection(weighed, fitted, test)):
+            model = evidence.found.directions.take(best.candidate.columns) + model
         if why:
             refused.append((test, why))
             continue
-        alike, rivals = _rivals(evidence, model, best, [o for o in every if o.candidate.key not in hollow])
+        alike, rivals = _rivals(evidence, fitted, best, [o for o in every if o.candidate.key not in hollow])
         accepted.append(Accepted(test, alike, rivals, part))
         model = chosen(model, evidence, best.candidate)
     return Judged(tuple(accepted), model, tuple(refused))

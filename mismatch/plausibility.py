@@ -51,24 +51,24 @@ def is_short(c: Candidate) -> bool:
     return dict(c.values).get("zs", _TRAVEL) < _TRAVEL
 
 
-def misshapen(weighed: Evidence, model: Directions, test: Scored) -> str:
-    """Return in words that a curve which is no physics explains it far better, or nothing.
+def misshapen(weighed: Evidence, model: Directions, test: Scored) -> tuple[str, tuple[int, ...]]:
+    """Return in words that a curve which is no physics explains it far better, and its columns; or nothing.
 
     Friction over the angle that is no wave is a damaged tooth's. What turns with the sign of the drive's
     torque, and not with that of motion, is the amplifier's. weighed: by what the hypothesis leaves.
     """
     c = test.candidate
     if c.joint is None:
-        return ""
+        return "", ()
     over, least = "drive sign", _LEADS
     if c.effect == "position_dependent_friction":
         over, least = "q sign", max(_LEADS, NO_WAVE * test.evidence)
-    curve = [weighed.found.curve[c.joint][k] for k, (name, _) in enumerate(names()) if name == over]
-    other = scored(weighed, model, [Candidate("unknown", c.joint, tuple(curve))])[0]
+    curve = tuple(weighed.found.curve[c.joint][k] for k, (name, _) in enumerate(names()) if name == over)
+    other = scored(weighed, model, [Candidate("unknown", c.joint, curve)])[0]
     if (lead := other.evidence - test.evidence) > least:
         what = {"q sign": "a curve over the angle that is no wave", "drive sign": "the torque's own sign"}
-        return f"{what[over]} explains {lead:.0f} nats more"
-    return ""
+        return f"{what[over]} explains {lead:.0f} nats more", curve
+    return "", ()
 
 
 def of_all_joints(weighed: Evidence, model: Directions, test: Scored) -> str:
