@@ -11,6 +11,7 @@ from .acceptance import EVIDENCE, STEADY, objection
 from .candidates import Candidate
 from .evidence import Evidence
 from .grams import regime
+from .local import at_one_place
 from .naming import Scored, chosen, nuisance, ranked, scored, steadiness, tested
 from .plausibility import implausible, is_short, misshapen, of_all_joints
 from .selection import Directions
@@ -113,6 +114,7 @@ def judge(
             or implausible(evidence, test)
             or shadow(test, accepted, evidence.setup.space.dof)
             or of_all_joints(weighed, fitted, test)
+            or at_one_place(weighed, fitted, test)
         )
         tries += 1
         # what is there without being a finding is fitted, or others would explain it

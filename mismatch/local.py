@@ -1,0 +1,66 @@
+"""Whether a hypothesis explains the whole motion or only what one place of the joint does.
+
+A damaged tooth acts within a few degrees. What is smooth over the angle takes some of it, and so gains at
+that place alone; physics gains wherever it acts.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .evidence import Evidence, residual
+from .grams import weights
+from .naming import Scored, chosen
+from .refit import observed_runs, parameters
+from .selection import Directions
+
+Array = NDArray[np.float64]
+
+#: rad; width of a place. Places overlap by half.
+WIDTH = 0.2
+#: One has more of the gain than all others, and more than it should by so many standard deviations.
+MOST, SURE = 0.5, 4.0
+
+
+def at_one_place(weighed: Evidence, model: Directions, test: Scored) -> str:
+    """Return in words that a joint's hypothesis, as an addition to a model, gains at one place; or nothing.
+
+    weighed: by what it leaves. Ripple is left out, which is seen in the fast band.
+    """
+    c = test.candidate
+    if c.joint is None or c.effect == "torque_ripple":
+        return ""
+    q, gain, acts = _by_row(weighed, model, test, c.joint)
+    return concentrated(q, gain, acts)
+
+
+def _by_row(weighed: Evidence, model: Directions, test: Scored, j: int) -> tuple[Array, Array, Array]:
+    """Return each observed row's angle, rad, what it gains and what it would if all were so, nats (n,)."""
+    fits = [parameters(weighed, m) for m in (model, chosen(model, weighed, test.candidate))]
+    found = list[Array]()
+    for run in observed_runs(weighed):
+        rows = weighed.runs[run]
+        without, with_it = (residual(rows, weighed.setup.space, theta)[:, j] for theta in fits)
+        half = 0.5 * weights(rows, weighed.noise)[:, j]
+        gain, acts = half * (without**2 - with_it**2), half * (without - with_it) ** 2
+        found.append(np.stack([rows.q[:, j], gain, acts]))
+    q, gain, acts = np.concatenate(found, axis=1)
+    return q, gain, acts
+
+
+def concentrated(q: Array, gain: Array, acts: Array) -> str:
+    """Return in words that gains (n,) come from one place of the angle q (n,), rad, or nothing.
+
+    acts (n,): half the squared change of the fit over the noise's variance. Where a hypothesis holds, it is
+    the gain's mean, and half the gain's variance.
+    """
+    whole = float(gain.sum())
+    for start in (0.0, 0.5 * WIDTH):
+        place = np.floor((q - start) / WIDTH).astype(int)
+        first = int(place.min(initial=0))
+        here, there = (np.bincount(place - first, x) for x in (gain, acts))
+        k = int(np.argmax(here))
+        usual = whole * float(there[k] / max(there.sum(), 1e-300))
+        if here[k] > MOST * whole and here[k] - usual > SURE * np.sqrt(2 * max(usual, 0.0) + 1):
+            at = start + (first + k + 0.5) * WIDTH
+            return f"{100 * here[k] / whole:.0f} % of what it explains is at {at:.1f} rad alone"
+    return ""
