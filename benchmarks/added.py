@@ -33,8 +33,14 @@ OWN = {
 #: (rad) or time (s), off every grid, makes its size; a part of the level, as no gear has it, is not drawn.
 REVERSALS = {"presliding_hysteresis": ("presliding", "zs"), "velocity_lag": ("lag", "lag")}
 VALUES, NEAR = tuple(float(x) for x in np.geomspace(0.0011, 0.037, 25)), 0.1
-#: effect -> the candidate whose directions make it.
+#: Effects that the directions of their candidates make.
 SHARED = ("encoder_offset", "joint_elasticity", "base_tilt", "time_delay")
+#: What only recordings of the healthy robot show besides.
+CHANGED = {
+    "coulomb_friction": ("coulomb", "Fc", ()), "viscous_friction": ("viscous", "Fv", ()),
+    "current_offset": ("offset", "c", ()),
+}  # fmt: skip
+CHANGED_SHARED = ("payload", "link_inertial", "rotor_inertia", "drive_gain", "torque_ripple")
 
 
 @dataclass(frozen=True)
@@ -54,8 +60,9 @@ class Case:
 
 def columns_of(recordings: Sequence[Recording], evidence: Evidence) -> dict[str, list[Array]]:
     """Return each own effect's filtered column on all joints: effect -> (n, N) by run."""
-    own = [Column(t, p, _with_width(t, v)) for t, p, v in OWN.values()]
-    return dict(zip(OWN, _filtered(recordings, evidence, own), strict=True))
+    effects = OWN | CHANGED if evidence.has_reference else OWN
+    own = [Column(t, p, _with_width(t, v)) for t, p, v in effects.values()]
+    return dict(zip(effects, _filtered(recordings, evidence, own), strict=True))
 
 
 def reversals_of(recordings: Sequence[Recording], evidence: Evidence) -> dict[str, list[list[Array]]]:
@@ -98,7 +105,8 @@ def cases(
     """Draw every effect at every size, on joints at random; whole: sizes are those of all of it."""
     rng, found = np.random.default_rng(seed), []
     sight = _Sight(evidence, left, whole)
-    shared = {name: some for name in SHARED if (some := _possible(evidence, name, sight))}
+    effects = (*SHARED, *CHANGED_SHARED) if evidence.has_reference else SHARED
+    shared = {name: some for name in effects if (some := _possible(evidence, name, sight))}
     joints = range(evidence.setup.space.dof)
     ratios = {
         name: np.array([[sight.ratio(_only(runs, j)) for j in joints] for runs in by_value])
@@ -171,7 +179,8 @@ class _Sight:
     """
 
     def __init__(self, evidence: Evidence, left: Sequence[Array], whole: bool) -> None:
-        self.moving, self.bases = joint_moves(evidence), list[Array]()
+        everywhere = replace(evidence, observed=(True,) * len(evidence.runs))
+        self.moving, self.bases = joint_moves(everywhere), list[Array]()
         self.noise = rms_where(left, self.moving)
         for j in range(0 if whole else evidence.setup.space.dof):
             plain = plain_columns(evidence.setup.space, j)

@@ -13,7 +13,7 @@ _LEADS = 10.0
 #: What builds up with travel or late is much of the Coulomb level, or it is something else; over less travel
 #: (rad) than the catalogue's, which every gear shows a little of, more of it. A reference holds what every
 #: gear has: a change may be small.
-AT_REVERSALS = {"presliding_hysteresis": 0.2, "velocity_lag": 0.45}
+AT_REVERSALS = {"presliding_hysteresis": 0.2, "velocity_lag": 0.6}
 _TRAVEL, _PART_WITHIN = 0.005, 0.35
 _PART_CHANGED = 0.1
 #: How gears stop and start looks like a late sign, on all joints alike: below the first share of the

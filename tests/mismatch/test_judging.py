@@ -63,8 +63,8 @@ def test_one_block_proves_nothing() -> None:
 @pytest.mark.parametrize(
     ("effect", "values", "part", "changed", "believed"),
     [
-        ("velocity_lag", (("lag", 0.012),), 0.4, False, False),
-        ("velocity_lag", (("lag", 0.012),), 0.55, False, True),
+        ("velocity_lag", (("lag", 0.012),), 0.55, False, False),
+        ("velocity_lag", (("lag", 0.012),), 0.65, False, True),
         ("velocity_lag", (("lag", 0.012),), 0.15, True, True),
         ("velocity_lag", (("lag", 0.012),), 0.05, True, False),
         ("presliding_hysteresis", (("zs", 0.003),), 0.3, False, False),

@@ -65,6 +65,17 @@ def test_nobody_touched_the_unloaded_arm(without_load) -> None:
     assert {f for f, _ in named(without_load)}.isdisjoint({"external_contact", "payload", "drive_gain"})
 
 
+@pytest.mark.parametrize("run", [0, 2], ids=["on a path of the reference", "on a path of its own"])
+def test_how_recordings_differ_anyway_is_no_change(unloaded, run, tmp_path) -> None:
+    """Friction of this arm is another in each recording: by itself that is not what changed."""
+    reference = [x for k, path in enumerate(unloaded) if k != run for x in ("--reference", path)]
+    done = residuum("explain", unloaded[run], *reference, "--robot", "ur10e", "--out", tmp_path / "o")
+    assert done.returncode == 0, done.stderr
+    assert named(tmp_path / "o") == []
+    elsewhere = "a reference on the same path would show" in done.stdout + done.stderr
+    assert elsewhere == (run == 2)
+
+
 def test_the_known_load_is_in_the_interval(with_load) -> None:
     check(findings(with_load))
     first = findings(with_load)["findings"][0]
