@@ -34,8 +34,9 @@ def compose(p: Parts) -> Explanation:
         },
         "placebo_rate": p.placebos,
     }
+    said = sentence(verdict, findings, p.evidence.has_reference)
     return Explanation(
-        p.robot.title, p.sources, answer, sentence(verdict, findings), p.model, p.proof, p.regions,
+        p.robot.title, p.sources, answer, said, p.model, p.proof, p.regions,
         traces(p), ruled_out(p), curves(p), p.lacks, p.next_motion,
     )  # fmt: skip
 

@@ -7,8 +7,10 @@ from .quantities import Quantity
 from .report.wording import joints_text, title
 
 
-def sentence(verdict: str, findings: Sequence[Mapping[str, Any]]) -> str:
-    """Return the answer in a sentence."""
+def sentence(verdict: str, findings: Sequence[Mapping[str, Any]], reference: bool = False) -> str:
+    """Return the answer in a sentence; reference: it says what has changed since reference recordings."""
+    if verdict == "nothing_missing" and reference:
+        return "Nothing has changed by more than noise, or than reference recordings differ among themselves."
     if verdict == "nothing_missing":
         return "Nothing is missing: the model explains these recordings to within their noise."
     if verdict == "bad_data":
