@@ -3,8 +3,8 @@
 python benchmarks/real_reference.py RECORDINGS/unloaded_*.csv [--robot ur10e] [--added] [--seed 1]
 
 Untouched: each recording against all others, then halves at random; every name is a false one, unless the
-robot itself was not the same, as when it is cold. Added (--added): one effect at a time in one half, at sizes of its rms
-over the residual's, all of it; the other half is the reference, on other paths.
+robot itself was not the same, as when it is cold. Added (--added): one effect at a time in one half, at sizes
+of its rms over the residual's, all of it; the other half is the reference, on other paths.
 """
 
 import argparse
@@ -50,10 +50,8 @@ def added(recordings: Sequence[Recording], robot: Robot, digest: str, seed: int,
     left = [residual(r, evidence.setup.space, theta) for r in evidence.runs]
     table: dict[float, Counter[str]] = {}
     for case in cases(evidence, columns_of(recordings, evidence), {}, left, 1, seed, whole=True):
-        torque = [
-            r.torque + x * o for r, x, o in zip(evidence.runs, case.added, evidence.observed, strict=True)
-        ]
-        runs = [replace(r, torque=t) for r, t in zip(evidence.runs, torque, strict=True)]
+        sides = zip(evidence.runs, case.added, evidence.observed, strict=True)
+        runs = [replace(r, torque=r.torque + x * o) for r, x, o in sides]
         found = judge(renewed(evidence, runs), known=known, most=1)
         verdict, name = _verdict(found, case.family)
         table.setdefault(case.size, Counter())[verdict] += 1

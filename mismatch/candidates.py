@@ -23,7 +23,7 @@ from .columns import (
     WIDTH,
     Column,
     Space,
-)  # fmt: skip
+)
 from .flexible import names as curve_names
 from .lacking import DROPPED, FROZEN
 from .physics import Physics

@@ -6,13 +6,13 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import cho_solve
 
 from .evidence import Evidence, residual
 from .grams import weights
 from .rows import Rows
 from .segments import Mask, stretches
-from .selection import Directions, Eliminated, normal_equations
+from .selection import Directions, Eliminated, fit
 
 Array = NDArray[np.float64]
 
@@ -75,7 +75,7 @@ def fitted(
 ) -> Eliminated:
     """Fit the arm and the load, held in some rows, at once: the arm is eliminated from the load."""
     space, sums = evidence.setup.space, evidence.sums
-    a, r = normal_equations(sums, arm, sums.total)
+    alone = fit(sums, arm, sums.total)
     cross, own, right = np.zeros((space.size, len(TEN))), np.zeros((len(TEN),) * 2), np.zeros(len(TEN))
     for x, h in zip(runs, held, strict=True):
         weight = weights(x.rows, evidence.noise) * h[:, None]
@@ -86,7 +86,7 @@ def fitted(
             own += weighted.T @ x.columns[:, j]
             right += weighted.T @ target[:, j]
     b = arm.vectors.T @ cross
-    solved = cho_solve(cho_factor(a + np.diag(1 / arm.std**2)), np.column_stack([b, r]))
+    solved = cho_solve(alone.factor, np.column_stack([b, alone.right]))
     answer = arm.vectors @ solved
     return Eliminated(
         own - b.T @ solved[:, :-1], right - b.T @ solved[:, -1], WIDTHS, -answer[:, :-1], answer[:, -1]

@@ -117,7 +117,8 @@ def judge(
             or at_one_place(weighed, fitted, test)
         )
         tries += 1
-        # what is there without being a finding is fitted, or others would explain it
+        # what is there without being a finding is fitted, or others would explain it; a curve only here,
+        # since what the model leaves of it is still to be called unknown
         if not why:
             why, curve = misshapen(weighed, fitted, test)
             bent += curve

@@ -8,14 +8,14 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import cho_solve
 
 from .acceptance import EVIDENCE, SHARE
 from .evidence import Evidence, residual
 from .grams import weights
 from .judging import Judged, effective, nats_from
 from .refit import observed_runs, parameters
-from .selection import Directions, normal_equations
+from .selection import Directions, fit
 from .sharpen import without
 
 Array = NDArray[np.float64]
@@ -49,8 +49,7 @@ def _evidence(evidence: Evidence, model: Directions, joint: int, columns: Sequen
     place = space.indices[joint]
     combine = chosen.vectors[place].toarray()  # (P_j, k)
     own = parameters(evidence, model)
-    a, _ = normal_equations(evidence.sums, model, evidence.sums.total)
-    factor = cho_factor(a + np.diag(1 / model.std**2))
+    factor = fit(evidence.sums, model, evidence.sums.total).factor
     rng, found = np.random.default_rng(_SEED), list[float]()
     runs = [evidence.runs[r] for r in observed_runs(evidence)]
     weight = [weights(r, evidence.noise)[:, joint] for r in runs]

@@ -69,14 +69,10 @@ class Sums:
 
         Fold by fold, where the reference is fewer recordings than enough.
         """
-        few = len({f.run for f in self._healthy}) < enough
-        return self._apart(self._healthy, few), self._apart(self.observed, few)
-
-    def _apart(self, folds: Sequence[Fold], one_by_one: bool) -> list[Array]:
-        groups = [[f] for f in folds]
-        if not one_by_one:
-            groups = [[f for f in folds if f.run == r] for r in dict.fromkeys(f.run for f in folds)]
-        return [np.sum([self._whole(f) for f in some], axis=0) for some in groups]
+        theirs = [self._whole(f) for f in self._healthy]
+        if len({f.run for f in self._healthy}) < enough:
+            return theirs, self._each
+        return _by_run(self._healthy, theirs), _by_run(self.observed, self._each)
 
     def _whole(self, fold: Fold) -> Array:
         gram = whole(fold.grams, self.space)
@@ -85,6 +81,15 @@ class Sums:
         gram[:-1, -1] = gram[-1, :-1] = right - moved
         gram[-1, -1] += self._mean @ (moved - 2 * right)
         return gram
+
+
+def _by_run(folds: Sequence[Fold], each: Sequence[Array]) -> list[Array]:
+    """Add up what each fold has, by run."""
+    runs = [f.run for f in folds]
+    return [
+        np.sum([x for x, own in zip(each, runs, strict=True) if own == r], axis=0)
+        for r in dict.fromkeys(runs)
+    ]
 
 
 @dataclass(frozen=True)

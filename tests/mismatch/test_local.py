@@ -9,11 +9,11 @@ N, NOISE = 4000, 1.0
 Q = np.random.default_rng(1).uniform(-2, 2, N)
 
 
-def told(true, fitted, q=Q, seed: int = 2) -> str:
+def told(true, fitted, seed: int = 2) -> str:
     """What is said of a hypothesis `fitted` to a torque `true` in noise of one Nm."""
     torque = true + NOISE * np.random.default_rng(seed).normal(size=N)
     change = fitted * (fitted @ torque) / (fitted @ fitted)
-    return concentrated(q, 0.5 * (torque**2 - (torque - change) ** 2), 0.5 * change**2)
+    return concentrated(Q, 0.5 * (torque**2 - (torque - change) ** 2), 0.5 * change**2)
 
 
 @pytest.mark.parametrize("seed", range(20))
