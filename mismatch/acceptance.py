@@ -20,8 +20,9 @@ UNSHAKEN, BENT = 8.0, 0.3
 SIZED = 3.0
 #: Or it is a blow, which is rare: so many times the evidence.
 BLOWS = 3.0
-#: A named effect explains at least this share of what its joint's model leaves: less is of no use to anyone.
-SHARE = 0.01
+#: A named effect explains at least this share of what its joint's model leaves (0.07 of its rms): less is of
+#: no use to anyone.
+SHARE = 0.005
 
 
 def objection(test: Scored, part: float) -> str:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
 from .evidence import Evidence, renewed, weighed
-from .grams import Scales, regime, scales_of
+from .grams import Scales, evenly, regime, scales_of
 from .held import TEN, WIDTHS, Held, LoadedRun, fitted
 from .load_checks import AGREE, LEAST, objection, same_load
 from .naming import nuisance
@@ -136,14 +136,14 @@ def _blurred(found: Held) -> list[Array]:
 def _guesses(evidence: Evidence, arm: Directions, runs: tuple[LoadedRun, ...]) -> list[Held]:
     """Return the load in the stretches that it explains best, each alone; none where that is nothing.
 
-    Noise is what the residual does within a window: all else may be the load.
+    Noise is what the residual does within a window: all else may be the load, and so may what is slow.
     """
     none = tuple(np.zeros(len(x.rows), bool) for x in runs)
     left = Held(evidence, runs, none, fitted(evidence, arm, runs, none)).left
     quick = [
         e - uniform_filter1d(e, round(_WINDOW / x.rows.step), axis=0) for x, e in zip(runs, left, strict=True)
     ]
-    scales = scales_of([x.rows for x in runs], quick)
+    scales = evenly(scales_of([x.rows for x in runs], quick))
     window = max(_WINDOW, sum(len(x.rows) * x.rows.step for x in runs) / WINDOWS)
     sums = [
         sums_of(x.columns, _alike(x.rows, scales), e, round(window / x.rows.step))
@@ -167,7 +167,7 @@ def _settled(found: Held, arm: Directions) -> Held:
             evidence, held = found.evidence, tuple(~h for h in found.held)
         else:
             rest = [e - y for e, y in zip(found.left, found.load, strict=True)]
-            scales = scales_of([x.rows for x in found.runs], rest)
+            scales = evenly(scales_of([x.rows for x in found.runs], rest))
             evidence, held = weighed(found.evidence, scales), _states(found, scales)
         changed = float(np.mean(np.concatenate(held) != np.concatenate(found.held)))
         found = Held(evidence, found.runs, held, fitted(evidence, arm, found.runs, held))

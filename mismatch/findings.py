@@ -12,10 +12,11 @@ from ..symbolic.terms.forms import equation
 from .candidates import Candidate
 from .carried import Carried
 from .episodes import Episode, involved
-from .judging import Accepted, effective, nats_from
+from .judging import Accepted
 from .parts import Parts
 from .pushes import Pushed
 from .quantities import Quantity, parameters_of, payload_numbers, quantity
+from .share import effective, nats_from
 from .sharpen import without
 
 #: On concealed cases (docs/trials.md), some outside the catalogue, this share of the surest names was right.

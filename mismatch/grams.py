@@ -6,18 +6,22 @@ its own memory.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
+from scipy.ndimage import binary_dilation
 
 from .columns import Space
 from .fast import gram, noise
 from .rows import Rows
 from .segments import stretches
+from .whitening import correlation_of, root
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+Root = sparse.csr_array
 
 #: s; what is left out together. Residuals of real arms remember 0.6-1 s.
 BLOCK = 10.0
@@ -28,6 +32,8 @@ FEWEST, SHORTEST = 5, 3.0
 #: Rows whose kernel holds more of a rest than this, or of zero speed, are mixed with it: at rest friction is
 #: anything within its Coulomb level, and where a joint passes through zero it is still building up.
 _MIXED = 0.05
+#: So many rows beside them the filter's skirts still hold what is a few deviations of free motion's noise.
+_BESIDE = 2
 #: Rows of a joint in a regime, below which their scale is unknown.
 _FEW = 20
 
@@ -37,7 +43,6 @@ class Fold:
     """One fold: weighted Gram matrices of [columns, torque], one a joint. observed: not of the reference."""
 
     grams: tuple[Array, ...]
-    count: Array  # (N,) weighted rows, for scales
     observed: bool
     run: int
     span: tuple[float, float]  # s
@@ -48,21 +53,35 @@ class Scales:
     """Noise of each joint by regime, Nm (N, 3: free, through zero, rest), and rows per independent one (N,).
 
     fast (N,): variance of the fast band's torque times its samples per independent one, Nm^2.
+    correlation: each joint's autocorrelation over rows (whitening.py); with none, memory is spread evenly.
     """
 
     sigma: Array
     inflation: Array
     fast: Array
+    correlation: tuple[Array, ...] = ()
 
 
 def regime(rows: Rows) -> Indices:
     """Return 0 free, 1 passing through zero speed, 2 at rest, a row and joint (n, N)."""
-    rest, zero = rows.moving < 1 - _MIXED, rows.sliding < 1 - _MIXED
+    near = np.ones((2 * _BESIDE + 1, 1), np.bool_)
+    rest, zero = (binary_dilation(x < 1 - _MIXED, near) for x in (rows.moving, rows.sliding))
     return np.where(rest, 2, np.where(zero, 1, 0)).astype(np.int64)
 
 
+def roots(rows: Rows, scales: Scales) -> list[Root]:
+    """Return each joint's matrix (n, n), 1/Nm, that makes its rows independent and of unit variance."""
+    if not scales.correlation:
+        return [sparse.csr_array(sparse.diags(np.sqrt(w))) for w in weights(rows, scales).T]
+    which = regime(rows)
+    return [
+        root(rows.time, scales.sigma[j][which[:, j]], which[:, j] == 2, scales.correlation[j], rows.step)
+        for j in range(which.shape[1])
+    ]
+
+
 def weights(rows: Rows, scales: Scales) -> Array:
-    """Return the weight of each row and joint (n, N), 1/Nm^2: independent information on the torque."""
+    """Return the weight of each row and joint (n, N), 1/Nm^2, as if all of a regime told alike."""
     which = regime(rows)
     found = np.empty(which.shape)
     for j in range(which.shape[1]):
@@ -95,16 +114,16 @@ def folds_of(
     found, fast = [], _fast_columns(space)
     for side in (True, False):
         used = (observed_scales or scales) if side else scales
-        weight = {r: weights(runs[r], used) for r, _ in blocks(runs, observed, side)}
+        whiten = {r: roots(runs[r], used) for r, _ in blocks(runs, observed, side)}
         for r, part in blocks(runs, observed, side):
-            rows, w = runs[r], weight[r][part]
+            rows = runs[r]
             span = float(rows.time[part.start]), float(rows.time[part.stop - 1])
-            grams = tuple(_gram(rows, j, part, w[:, j]) for j in range(space.dof))
+            grams = tuple(_gram(rows, j, whiten[r][j][part]) for j in range(space.dof))
             if rows.fast is not None:
                 for j in range(space.dof):
                     ix = np.append(fast + len(space.seen[j]), len(space.indices[j]))
                     grams[j][np.ix_(ix, ix)] += gram(rows.fast, j, span, used.fast[j])
-            found.append(Fold(grams, w.sum(axis=0), side, r, span))
+            found.append(Fold(grams, side, r, span))
     return found
 
 
@@ -126,9 +145,9 @@ def _fast_columns(space: Space) -> Indices:
     return np.array([k for k, c in enumerate(space.own) if c.term == "ripple"], np.int64)
 
 
-def _gram(rows: Rows, j: int, part: slice, weight: Array) -> Array:
-    data = np.column_stack([rows.columns[j][part], rows.torque[part, j]])
-    return np.asarray(data.T @ (weight[:, None] * data), np.float64)
+def _gram(rows: Rows, j: int, whiten: Root) -> Array:
+    data = whiten @ np.column_stack([rows.columns[j], rows.torque[:, j]])
+    return np.asarray(data.T @ data, np.float64)
 
 
 def whole(grams: Sequence[Array], space: Space) -> Array:
@@ -144,7 +163,7 @@ def whole(grams: Sequence[Array], space: Space) -> Array:
 def scales_of(runs: Sequence[Rows], residuals: Sequence[Array]) -> Scales:
     """Estimate scales and memory from residuals (n, N) of a model rich enough to leave noise."""
     n = residuals[0].shape[1]
-    sigma, inflation = np.ones((n, 3)), np.ones(n)
+    sigma, inflation, correlation = np.ones((n, 3)), np.ones(n), list[Array]()
     which = [regime(r) for r in runs]
     for j in range(n):
         by = [
@@ -156,12 +175,20 @@ def scales_of(runs: Sequence[Rows], residuals: Sequence[Array]) -> Scales:
         sigma[j] = [max(s, 0.3 * best) if s is not None else 3 * best for s in known]
         sigma[j, 1] = max(sigma[j, 1], sigma[j, 0])
         sigma[j, 2] = max(sigma[j, 2], 3 * sigma[j, 0])
-        inflation[j] = _memory(
-            [e[:, j] / sigma[j][w[:, j]] * (w[:, j] < 2) for e, w in zip(residuals, which, strict=True)]
-        )
+        series = [
+            np.clip(e[:, j] / sigma[j][w[:, j]], -5, 5) * (w[:, j] < 2)
+            for e, w in zip(residuals, which, strict=True)
+        ]
+        inflation[j] = _memory(series)
+        correlation.append(correlation_of(series))
     quick = [r.fast for r in runs if r.fast is not None]
     fast = [noise(quick, j) if quick else np.inf for j in range(n)]
-    return Scales(sigma, inflation, np.array(fast))
+    return Scales(sigma, inflation, np.array(fast), tuple(correlation))
+
+
+def evenly(scales: Scales) -> Scales:
+    """Return scales of which slow and fast residuals count alike."""
+    return replace(scales, correlation=())
 
 
 def equal_scales(n: int) -> Scales:
@@ -189,7 +216,7 @@ def _memory(series: Sequence[Array]) -> float:
     products = np.zeros(lags)
     for x in series:
         size = 1 << int(np.ceil(np.log2(2 * len(x) + 1)))
-        spectrum = np.abs(np.fft.rfft(np.clip(x, -5, 5), size)) ** 2
+        spectrum = np.abs(np.fft.rfft(x, size)) ** 2
         both = np.fft.irfft(spectrum, size)[: min(lags, len(x))]
         products[: len(both)] += both
     if products[0] <= 0:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_solve
 
 from .evidence import Evidence, residual
-from .grams import weights
+from .grams import roots
 from .rows import Rows
 from .segments import Mask, stretches
 from .selection import Directions, Eliminated, fit
@@ -78,13 +78,12 @@ def fitted(
     alone = fit(sums, arm, sums.total)
     cross, own, right = np.zeros((space.size, len(TEN))), np.zeros((len(TEN),) * 2), np.zeros(len(TEN))
     for x, h in zip(runs, held, strict=True):
-        weight = weights(x.rows, evidence.noise) * h[:, None]
         target = residual(x.rows, space, evidence.mean)
-        for j in range(space.dof):
-            weighted = x.columns[:, j] * weight[:, j, None]
-            cross[space.indices[j]] += x.rows.columns[j].T @ weighted
-            own += weighted.T @ x.columns[:, j]
-            right += weighted.T @ target[:, j]
+        for j, whiten in enumerate(roots(x.rows, evidence.noise)):
+            load = whiten @ (x.columns[:, j] * h[:, None])
+            cross[space.indices[j]] += x.rows.columns[j].T @ (whiten.T @ load)
+            own += load.T @ load
+            right += load.T @ (whiten @ target[:, j])
     b = arm.vectors.T @ cross
     solved = cho_solve(alone.factor, np.column_stack([b, alone.right]))
     answer = arm.vectors @ solved

@@ -2,21 +2,18 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-
-import numpy as np
-from numpy.typing import NDArray
+from functools import partial
 
 from . import yardstick
 from .acceptance import EVIDENCE, STEADY, objection
 from .candidates import Candidate
 from .evidence import Evidence
-from .grams import regime
 from .local import at_one_place
 from .naming import Scored, chosen, nuisance, ranked, scored, steadiness, tested
 from .plausibility import implausible, is_short, misshapen, of_all_joints
 from .selection import Directions
+from .share import share_of
 
-Array = NDArray[np.float64]
 Key = tuple[str, int | None]
 
 #: A rival is told apart by this many nats, and by a steady lead where that is a small share of the evidence.
@@ -32,8 +29,10 @@ RIGID = (
     "payload", "link_inertial", "rotor_inertia", "base_free", "frozen_joint_coupling", "dropped_coupling",
 )  # fmt: skip
 RIGID_SHADOW = 0.01
-#: One body that explains this share of what all base parameters together do has that name.
-ONE_BODY = 0.9
+#: A body, or two of them, that explain this share of what all base parameters together do have the name.
+BODIES, ALL_OF_IT = ("payload", "link_inertial", "rotor_inertia"), 0.9
+#: Bodies that are tried as the first of two.
+_BODIES = 3
 #: Names that come before one which they cannot be told apart from.
 _FIRST = {
     "link_inertial": ("payload",),
@@ -101,14 +100,14 @@ def judge(
         order = [s for s in every if s.candidate.key not in barred]
         if not order or order[0].evidence < EVIDENCE:
             break
-        best = likelier(order)
+        best = likelier(bodies_first(order, partial(_best_beside, evidence, fitted)))
         barred.add(best.candidate.key)
         if why := implausible(evidence, best):
             hollow.add(best.candidate.key)
             refused.append((best, why))
             continue
         test, weighed = tested(evidence, fitted, best.candidate)
-        part = share_of(evidence, test)
+        part = share_of(weighed, fitted, test)
         why = (
             objection(test, part)
             or implausible(evidence, test)
@@ -133,16 +132,32 @@ def judge(
     return Judged(tuple(accepted), model, tuple(refused))
 
 
-def likelier(order: Sequence[Scored]) -> Scored:
-    """Return the best hypothesis, but a name where freed base parameters, which are none, explain no more.
+def bodies_first(order: list[Scored], beside: Callable[[Candidate, list[Candidate]], float]) -> list[Scored]:
+    """Return hypotheses with a body, or the first of two, before freed base parameters, which are no name.
 
-    And a load where a changed link explains no more, since links rarely change; and a level of friction where
-    its change with temperature explains no more: recordings that barely warm cannot show one.
+    Where they explain no more than the body, or than both. beside: nats of the best of others beside a body.
+    """
+    free, bodies = order[0], [s for s in order if s.candidate.effect in BODIES]
+    if free.candidate.effect != "base_free":
+        return order
+    for body in bodies[:_BODIES]:
+        second = beside(body.candidate, [s.candidate for s in bodies if s is not body])
+        if body.evidence + max(second, 0.0) > ALL_OF_IT * free.evidence:
+            return [body, *(s for s in order if s is not body)]
+    return order
+
+
+def _best_beside(evidence: Evidence, model: Directions, body: Candidate, others: list[Candidate]) -> float:
+    return max((s.evidence for s in scored(evidence, chosen(model, evidence, body), others)), default=0.0)
+
+
+def likelier(order: Sequence[Scored]) -> Scored:
+    """Return the best hypothesis, but a load where a changed link explains no more: links rarely change.
+
+    And a level of friction where its change with temperature explains no more: recordings that barely warm
+    cannot show one.
     """
     best = order[0]
-    if best.candidate.effect == "base_free":
-        bodies = [s for s in order if s.candidate.effect in ("payload", "link_inertial")]
-        best = next((s for s in bodies if s.evidence > ONE_BODY * best.evidence), best)
     first = _FIRST.get(best.candidate.effect, ())
     here = (s for s in order if s.candidate.joint in (None, best.candidate.joint))
     return next((s for s in here if s.candidate.effect in first and not told_apart(best, s)), best)
@@ -153,37 +168,6 @@ def told_apart(best: Scored, other: Scored) -> bool:
     lead = best.evidence - other.evidence
     unsteady = steadiness(best.gain - other.gain) < STEADY
     return not (lead < APART or (lead < CLOSE * best.evidence and unsteady))
-
-
-def share_of(evidence: Evidence, test: Scored) -> float:
-    """Return the share of its joints' squared errors that a hypothesis explains, by its evidence.
-
-    Ripple is seen in the fast band: its share is that of its power in the slow band's noise.
-    """
-    c = test.candidate
-    if c.effect == "torque_ripple" and c.joint is not None:
-        power = float(np.sum(test.size**2)) / 2
-        return power / (power + float(evidence.scales.sigma[c.joint, 0]) ** 2)
-    return share_from(test.evidence, effective(evidence, test.candidate.joint))
-
-
-def share_from(nats: float, rows: float) -> float:
-    """Return the share of squared errors that evidence (nats) on so many independent rows explains."""
-    return float(1 - np.exp(-2 * max(nats, 0.0) / max(rows, 1.0)))
-
-
-def nats_from(share: float, rows: float) -> float:
-    """Return the nats on so many independent rows of a share of squared errors."""
-    return -0.5 * rows * float(np.log1p(-min(share, 0.999999)))
-
-
-def effective(evidence: Evidence, joint: int | None) -> float:
-    """Return the number of independent rows that a joint (None: one on average) has on the observed side."""
-    found = np.zeros(evidence.setup.space.dof)
-    for rows, seen in zip(evidence.runs, evidence.observed, strict=True):
-        if seen:
-            found += ((regime(rows) < 2) / evidence.scales.inflation).sum(axis=0)
-    return float(found.mean() if joint is None else found[joint])
 
 
 def shadow(test: Scored, accepted: Sequence[Accepted], joints: int) -> str:

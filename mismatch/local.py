@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .evidence import Evidence, residual
-from .grams import weights
+from .grams import roots
 from .naming import Scored, chosen
 from .refit import observed_runs, parameters
 from .selection import Directions
@@ -40,8 +40,9 @@ def _by_row(weighed: Evidence, model: Directions, test: Scored, j: int) -> tuple
     for run in observed_runs(weighed):
         rows = weighed.runs[run]
         without, with_it = (residual(rows, weighed.setup.space, theta)[:, j] for theta in fits)
-        half = 0.5 * weights(rows, weighed.noise)[:, j]
-        gain, acts = half * (without**2 - with_it**2), half * (without - with_it) ** 2
+        whiten = roots(rows, weighed.noise)[j]
+        first, last = whiten @ without, whiten @ with_it
+        gain, acts = 0.5 * (first**2 - last**2), 0.5 * (first - last) ** 2
         found.append(np.stack([rows.q[:, j], gain, acts]))
     q, gain, acts = np.concatenate(found, axis=1)
     return q, gain, acts

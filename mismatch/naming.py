@@ -163,10 +163,13 @@ def reweighed(evidence: Evidence, model: Directions) -> Evidence:
 def _no_less(scales: Scales, reference: Scales, new: Array) -> Scales:
     """Return scales no less than the reference's, but for what came back; new (N, 3): what did not of it."""
     new = np.minimum(new, 1.0)
+    memory = 1 + new[:, 0] * (reference.inflation - 1)
+    longer = zip(scales.inflation >= memory, scales.correlation, reference.correlation, strict=True)
     return Scales(
         np.maximum(scales.sigma, new * reference.sigma),
-        np.maximum(scales.inflation, 1 + new[:, 0] * (reference.inflation - 1)),
+        np.maximum(scales.inflation, memory),
         np.maximum(scales.fast, reference.fast),
+        tuple(own if keeps else theirs for keeps, own, theirs in longer),
     )
 
 

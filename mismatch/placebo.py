@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_solve
 
-from .acceptance import EVIDENCE, SHARE
+from .acceptance import EVIDENCE
 from .evidence import Evidence, residual
-from .grams import weights
-from .judging import Judged, effective, nats_from
+from .grams import roots
+from .judging import Judged
 from .refit import observed_runs, parameters
 from .selection import Directions, fit
 from .sharpen import without
@@ -37,8 +37,7 @@ def placebo_rate(evidence: Evidence, judged: Judged) -> float | None:
         if c.joint is None or not c.terms:
             continue
         found = _evidence(evidence, without(judged, k), c.joint, list(c.columns))
-        least = nats_from(SHARE, effective(evidence, c.joint))
-        passed += sum(x > max(EVIDENCE, least) for x in found)
+        passed += sum(x > EVIDENCE for x in found)
         count += len(found)
     return passed / count if count else None
 
@@ -52,21 +51,21 @@ def _evidence(evidence: Evidence, model: Directions, joint: int, columns: Sequen
     factor = fit(evidence.sums, model, evidence.sums.total).factor
     rng, found = np.random.default_rng(_SEED), list[float]()
     runs = [evidence.runs[r] for r in observed_runs(evidence)]
-    weight = [weights(r, evidence.noise)[:, joint] for r in runs]
+    whiten = [roots(r, evidence.noise)[joint] for r in runs]
     left = [residual(r, space, own)[:, joint] for r in runs]
     for _ in range(SHIFTS):
         same, whole = 0.0, 1e-300
         square, cross, right = np.diag(1 / chosen.std**2), np.zeros((len(place), len(columns))), 0.0
-        for rows, w, e in zip(runs, weight, left, strict=True):
+        for rows, root, e in zip(runs, whiten, left, strict=True):
             edge = min(round(SHORTEST / rows.step), len(rows) // 3)
             shift = int(rng.integers(edge, max(len(rows) - edge, edge + 1)))
             plain = rows.columns[joint] @ combine
-            moved = np.roll(plain, shift, axis=0) * w[:, None]
-            same += float(np.sum(plain * moved))
-            whole += float(np.sum(plain**2 * w[:, None]))
-            cross = cross + rows.columns[joint].T @ moved
-            square = square + (moved / np.maximum(w, 1e-300)[:, None]).T @ moved
-            right = right + moved.T @ e
+            own, moved = root @ plain, root @ np.roll(plain, shift, axis=0)
+            same += float(np.sum(own * moved))
+            whole += float(np.sum(own**2))
+            cross = cross + rows.columns[joint].T @ (root.T @ moved)
+            square = square + moved.T @ moved
+            right = right + moved.T @ (root @ e)
         if abs(same) > ALIKE * whole:
             continue  # a constant shifted is the same constant: that is no placebo
         b = model.vectors[place].T @ cross

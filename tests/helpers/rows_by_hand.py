@@ -72,5 +72,5 @@ def random_fold(space: Space, rng, observed: bool, count: int = 12):
         whole[:, indices] = data[:, :-1]
         matrix.append(whole)
         torque.append(data[:, -1])
-    fold = Fold(tuple(grams), np.full(2, float(count)), observed, 0, (0.0, 1.0))
+    fold = Fold(tuple(grams), observed, 0, (0.0, 1.0))
     return fold, np.vstack(matrix), np.concatenate(torque)

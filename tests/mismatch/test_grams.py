@@ -6,7 +6,17 @@ import numpy as np
 import pytest
 from rows_by_hand import ar1, rows, small_space
 
-from residuum.mismatch.grams import Scales, blocks, equal_scales, folds_of, regime, scales_of, weights, whole
+from residuum.mismatch.grams import (
+    Scales,
+    blocks,
+    equal_scales,
+    folds_of,
+    regime,
+    roots,
+    scales_of,
+    weights,
+    whole,
+)
 
 LONG = 6000
 
@@ -37,11 +47,11 @@ def test_rest_and_reversals_count_as_no_surer_than_motion() -> None:
     assert np.all(found.sigma[:, 2] >= 3 * found.sigma[:, 0])
 
 
-def test_regimes() -> None:
-    moving, sliding = np.ones((4, 1)), np.ones((4, 1))
-    moving[1], sliding[1], sliding[2], moving[3] = 0.9, 0.9, 0.9, 0.96
-    found = regime(rows(4, 1, moving=moving, sliding=sliding))
-    assert found[:, 0].tolist() == [0, 2, 1, 0]
+def test_regimes_reach_two_rows_beyond_what_is_mixed() -> None:
+    moving, sliding = np.ones((24, 1)), np.ones((24, 1))
+    moving[5], sliding[5], sliding[13], moving[20] = 0.9, 0.9, 0.9, 0.96
+    found = regime(rows(24, 1, moving=moving, sliding=sliding))
+    assert found[:, 0].tolist() == [0] * 3 + [2] * 5 + [0] * 3 + [1] * 5 + [0] * 8
 
 
 def test_long_tails_at_zero_speed_are_noise_there() -> None:
@@ -54,18 +64,19 @@ def test_long_tails_at_zero_speed_are_noise_there() -> None:
 
 def test_a_rest_counts_once_however_long_it_is() -> None:
     moving = np.ones((400, 1))
-    moving[50:150] = moving[200:390] = 0.0
+    moving[52:148] = moving[202:388] = 0.0  # and two rows to each side
     scales = Scales(np.array([[0.5, 1.0, 2.0]]), np.array([4.0]), np.array([np.inf]))
     found = weights(rows(400, 1, moving=moving), scales)[:, 0]
     assert found[50:150].sum() == pytest.approx(1 / 2.0**2)
     assert found[200:390].sum() == pytest.approx(1 / 2.0**2)
     np.testing.assert_allclose(found[:50], 1 / (0.5**2 * 4.0))
+    assert sum(r.count_nonzero() for r in roots(rows(400, 1, moving=moving), scales)) == 400
 
 
 def test_a_passage_through_zero_counts_once_however_long_the_memory() -> None:
     sliding = np.ones((400, 1))
     for start in (60, 200, 300):
-        sliding[start : start + 5] = 0.5
+        sliding[start + 2 : start + 3] = 0.5  # and two rows to each side
     scales = Scales(np.array([[0.5, 1.0, 2.0]]), np.array([20.0]), np.array([np.inf]))
     found = weights(rows(400, 1, sliding=sliding), scales)[:, 0]
     assert found[200:205].sum() == pytest.approx(1 / 1.0**2)

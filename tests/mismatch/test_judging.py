@@ -7,7 +7,7 @@ import pytest
 
 from residuum.mismatch.acceptance import EVIDENCE, SHARE, objection
 from residuum.mismatch.candidates import Candidate
-from residuum.mismatch.judging import Accepted, likelier, shadow
+from residuum.mismatch.judging import Accepted, bodies_first, likelier, shadow
 from residuum.mismatch.naming import Scored
 from residuum.mismatch.plausibility import everyones, implausible
 
@@ -140,12 +140,17 @@ def test_friction_changes_with_temperature_only_where_a_plain_level_explains_les
     assert likelier([best, worse]) is likelier([best, elsewhere]) is best
 
 
-def test_freed_base_parameters_are_no_name_where_one_body_does_as_much() -> None:
-    free, load = Candidate("base_free", None, (0,)), Candidate("payload", None, (1,))
+def test_freed_base_parameters_are_no_name_where_bodies_do_as_much() -> None:
+    free, load, rotor = (
+        Candidate(x, None, (k,)) for k, x in enumerate(("base_free", "payload", "rotor_inertia"))
+    )
     best = scored([30.0, 40.0], evidence=100.0, candidate=free)
     most, some = (scored([30.0, 40.0], evidence=e, candidate=load) for e in (95.0, 70.0))
-    assert likelier([best, most]) is most
-    assert likelier([best, some]) is best
+    other = scored([10.0, 15.0], evidence=40.0, candidate=rotor)
+    assert bodies_first([best, most], lambda *_: 0.0)[0] is most
+    assert bodies_first([best, some, other], lambda *_: 5.0) == [best, some, other]
+    assert bodies_first([best, some, other], lambda *_: 25.0) == [some, best, other]
+    assert bodies_first([most, best], lambda *_: 25.0) == [most, best]
 
 
 @pytest.mark.parametrize(("stiffness", "believed"), [(8e3, True), (1.5e3, True), (300.0, False)])

@@ -1,0 +1,50 @@
+"""How large a hypothesis is: the share that it explains of what is left on its joints, as it is recorded."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .evidence import Evidence, residual
+from .grams import regime
+from .naming import Scored
+from .refit import observed_runs
+from .selection import Directions, eliminate
+
+Array = NDArray[np.float64]
+
+
+def share_of(weighed: Evidence, model: Directions, test: Scored) -> float:
+    """Return the share of its joints' squared errors in motion that an addition to a model explains.
+
+    Squares count over each regime's noise. weighed: by what it leaves. Ripple is seen in the fast band: its
+    share is that of its power in the slow band's noise.
+    """
+    c, space = test.candidate, weighed.setup.space
+    if c.effect == "torque_ripple" and c.joint is not None:
+        power = float(np.sum(test.size**2)) / 2
+        return power / (power + float(weighed.scales.sigma[c.joint, 0]) ** 2)
+    fitted = eliminate(weighed.sums, model, weighed.found.directions.take(c.columns), None)
+    ix = range(len(c.columns))
+    change, all_of = fitted.reaction @ test.size, weighed.mean + fitted.parameters(ix)
+    moved = left = 0.0
+    for run in observed_runs(weighed):
+        rows = weighed.runs[run]
+        which, errors = regime(rows), residual(rows, space, all_of)
+        for j in range(space.dof) if c.joint is None else (c.joint,):
+            weight = (which[:, j] < 2) / weighed.noise.sigma[j][which[:, j]] ** 2
+            moved += float(weight @ (rows.columns[j] @ change[space.indices[j]]) ** 2)
+            left += float(weight @ errors[:, j] ** 2)
+    return moved / max(moved + left, 1e-300)
+
+
+def nats_from(share: float, rows: float) -> float:
+    """Return the nats on so many independent rows of a share of squared errors."""
+    return -0.5 * rows * float(np.log1p(-min(share, 0.999999)))
+
+
+def effective(evidence: Evidence, joint: int | None) -> float:
+    """Return the number of independent rows that a joint (None: one on average) has on the observed side."""
+    found = np.zeros(evidence.setup.space.dof)
+    for rows, seen in zip(evidence.runs, evidence.observed, strict=True):
+        if seen:
+            found += ((regime(rows) < 2) / evidence.scales.inflation).sum(axis=0)
+    return float(found.mean() if joint is None else found[joint])
