@@ -64,6 +64,7 @@ def carried(evidence: Evidence) -> Carried | None:
     First guesses are those of the plain arm, and then those of the arm with every hypothesis: what is wrong
     all the time may hide the load from the one, and the other may take the load for its own.
     """
+    evidence = weighed(replace(evidence, scales=evenly(evidence.scales)), evenly(evidence.noise))
     runs = tuple(
         LoadedRun(rows, payload_columns(evidence, rows))
         for rows in (evidence.runs[r] for r in observed_runs(evidence))

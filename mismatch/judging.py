@@ -10,6 +10,7 @@ from .candidates import Candidate
 from .evidence import Evidence
 from .local import at_one_place
 from .naming import Scored, chosen, nuisance, ranked, scored, steadiness, tested
+from .passages import at_few_passages
 from .plausibility import implausible, is_short, misshapen, of_all_joints
 from .selection import Directions
 from .share import share_of
@@ -22,6 +23,8 @@ APART, CLOSE = 5.0, 0.05
 RELATED = 0.2
 #: Less than this share of a found effect's evidence, on its joints, is what that effect's own form leaves.
 SHADOW = 0.1
+#: Of what friction does around zero speed, which is known to less.
+NEAR_ZERO, NEAR_SHADOW = ("stribeck", "presliding_hysteresis", "velocity_lag"), 0.3
 #: Unless a jackknife cannot shake its size by 1 %: what a form leaves varies with the motion.
 OWN = 100.0
 #: The rigid body's form is exact: what it leaves is time and gains that are off by a few percent, squared.
@@ -37,6 +40,7 @@ _BODIES = 3
 _FIRST = {
     "link_inertial": ("payload",),
     "temperature_dependent_friction": ("coulomb_friction", "viscous_friction"),
+    "nonlinear_viscous": ("viscous_friction",),
 }
 #: Findings and failed attempts at most.
 MOST, TRIES = 6, 10
@@ -114,6 +118,7 @@ def judge(
             or shadow(test, accepted, evidence.setup.space.dof)
             or of_all_joints(weighed, fitted, test)
             or at_one_place(weighed, fitted, test)
+            or at_few_passages(weighed, fitted, test)
         )
         tries += 1
         # what is there without being a finding is fitted, or others would explain it; a curve only here,
@@ -154,8 +159,7 @@ def _best_beside(evidence: Evidence, model: Directions, body: Candidate, others:
 def likelier(order: Sequence[Scored]) -> Scored:
     """Return the best hypothesis, but a load where a changed link explains no more: links rarely change.
 
-    And a level of friction where its change with temperature explains no more: recordings that barely warm
-    cannot show one.
+    And a level of friction or straight drag, where a change with temperature or bent drag explains no more.
     """
     best = order[0]
     first = _FIRST.get(best.candidate.effect, ())
@@ -177,7 +181,9 @@ def shadow(test: Scored, accepted: Sequence[Accepted], joints: int) -> str:
         first = a.score.candidate
         if first.effect == "time_delay" and (c.effect == "velocity_lag" or is_short(c)):
             return "with a delay friction changes its sign late as well"
-        small = test.evidence < shade(a, joints) and test.consistency < OWN
+        both = {first.effect, c.effect} <= set(NEAR_ZERO)
+        least = max(shade(a, joints), NEAR_SHADOW * a.score.evidence if both else 0.0)
+        small = test.evidence < least and test.consistency < OWN
         if first.joint in (None, c.joint) and small:
             return f"is {100 * test.evidence / a.score.evidence:.1f} % of what {first.effect} explains there"
     return ""

@@ -4,6 +4,8 @@ A damaged tooth acts within a few degrees. What is smooth over the angle takes s
 that place alone; physics gains wherever it acts.
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,6 +13,7 @@ from .evidence import Evidence, residual
 from .grams import roots
 from .naming import Scored, chosen
 from .refit import observed_runs, parameters
+from .rows import Rows
 from .selection import Directions
 
 Array = NDArray[np.float64]
@@ -29,23 +32,24 @@ def at_one_place(weighed: Evidence, model: Directions, test: Scored) -> str:
     c = test.candidate
     if c.joint is None or c.effect == "torque_ripple":
         return ""
-    q, gain, acts = _by_row(weighed, model, test, c.joint)
+    q, gain, acts = np.concatenate(
+        [np.stack([rows.q[:, c.joint], *both]) for rows, *both in gains(weighed, model, test, c.joint)],
+        axis=1,
+    )
     return concentrated(q, gain, acts)
 
 
-def _by_row(weighed: Evidence, model: Directions, test: Scored, j: int) -> tuple[Array, Array, Array]:
-    """Return each observed row's angle, rad, what it gains and what it would if all were so, nats (n,)."""
+def gains(weighed: Evidence, model: Directions, test: Scored, j: int) -> Iterator[tuple[Rows, Array, Array]]:
+    """Give the rows of each observed run, what each gains by a hypothesis on joint j, and should (n,), nats.
+
+    Should: if all rows did what it says. weighed: by what it leaves, as an addition to a model.
+    """
     fits = [parameters(weighed, m) for m in (model, chosen(model, weighed, test.candidate))]
-    found = list[Array]()
     for run in observed_runs(weighed):
         rows = weighed.runs[run]
-        without, with_it = (residual(rows, weighed.setup.space, theta)[:, j] for theta in fits)
         whiten = roots(rows, weighed.noise)[j]
-        first, last = whiten @ without, whiten @ with_it
-        gain, acts = 0.5 * (first**2 - last**2), 0.5 * (first - last) ** 2
-        found.append(np.stack([rows.q[:, j], gain, acts]))
-    q, gain, acts = np.concatenate(found, axis=1)
-    return q, gain, acts
+        first, last = (whiten @ residual(rows, weighed.setup.space, theta)[:, j] for theta in fits)
+        yield rows, 0.5 * (first**2 - last**2), 0.5 * (first - last) ** 2
 
 
 def concentrated(q: Array, gain: Array, acts: Array) -> str:

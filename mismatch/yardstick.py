@@ -13,7 +13,7 @@ from scipy.stats import chi2
 
 from .evidence import Evidence
 from .naming import Scored
-from .selection import Directions, eliminate, eliminated, fit
+from .selection import Directions, eliminated, fit
 
 Array = NDArray[np.float64]
 
@@ -25,6 +25,8 @@ ENOUGH = 4
 #: these variances, as likely each. Of what scale, as a share of the change, is unknown: these are as likely.
 _DEGREES, _NODES = 4, (np.arange(64) + 0.5) / 64
 TAIL, SCALES = _DEGREES / chi2.ppf(_NODES, _DEGREES), np.geomspace(0.02, 4.0, 24)
+#: Std of the share that a recording shows which does not tell: one too cold, say.
+UNTOLD = 10.0
 #: Shares of the change that the observed recordings may have in common.
 COMMON = np.linspace(0.0, 2.0, 41)
 
@@ -54,22 +56,19 @@ class Shares:
 
 
 def shares(weighed: Evidence, model: Directions, test: Scored) -> Shares:
-    """Return how much of a change, that may be added to a model, the recordings show one by one.
+    """Return how much of a change, that may be added to a model, the recordings show one by one, as it is.
 
     Few of them do not tell how they differ: there it is block by block.
     """
     some, sums = weighed.found.directions.take(test.candidate.columns), weighed.sums
-    columns = range(len(some))
-    metric = eliminate(sums, model, some, None).schur @ test.size
-    whole = max(float(test.size @ metric), 1e-300)
     shared = model.take(np.flatnonzero(model.shared))
     among = fit(sums, shared, np.zeros_like(sums.total))
     theirs, mine = sums.apart(ENOUGH)
-    each = [eliminated(among, part, some).solve(columns) for part in theirs]
-    each += [eliminated(fit(sums, model, part), part, some).solve(columns) for part in mine]
-    value = np.array([size @ metric for size, _ in each]) / whole
-    std = np.sqrt([metric @ covariance @ metric for _, covariance in each]) / whole
-    return Shares(value, std, np.arange(len(each)) >= len(theirs))
+    each = [eliminated(among, part, some) for part in theirs]
+    each += [eliminated(fit(sums, model, part), part, some) for part in mine]
+    told = np.array([test.size @ e.schur @ test.size for e in each]) + 1 / UNTOLD**2
+    value = np.array([test.size @ e.right for e in each]) / told
+    return Shares(value, 1 / np.sqrt(told), np.arange(len(each)) >= len(theirs))
 
 
 def objection(weighed: Evidence, model: Directions, test: Scored) -> str:
