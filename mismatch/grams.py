@@ -17,7 +17,7 @@ from .columns import Space
 from .fast import gram, noise
 from .rows import Rows
 from .segments import stretches
-from .whitening import correlation_of, root
+from .whitening import FREE, REST, ZERO, correlation_of, root
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -66,7 +66,7 @@ def regime(rows: Rows) -> Indices:
     """Return 0 free, 1 passing through zero speed, 2 at rest, a row and joint (n, N)."""
     near = np.ones((2 * _BESIDE + 1, 1), np.bool_)
     rest, zero = (binary_dilation(x < 1 - _MIXED, near) for x in (rows.moving, rows.sliding))
-    return np.where(rest, 2, np.where(zero, 1, 0)).astype(np.int64)
+    return np.where(rest, REST, np.where(zero, ZERO, FREE)).astype(np.int64)
 
 
 def roots(rows: Rows, scales: Scales) -> list[Root]:
@@ -75,7 +75,7 @@ def roots(rows: Rows, scales: Scales) -> list[Root]:
         return [sparse.csr_array(sparse.diags(np.sqrt(w))) for w in weights(rows, scales).T]
     which = regime(rows)
     return [
-        root(rows.time, scales.sigma[j][which[:, j]], which[:, j] == 2, scales.correlation[j], rows.step)
+        root(rows.time, scales.sigma[j][which[:, j]], which[:, j], scales.correlation[j], rows.step)
         for j in range(which.shape[1])
     ]
 

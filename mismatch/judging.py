@@ -23,8 +23,8 @@ APART, CLOSE = 5.0, 0.05
 RELATED = 0.2
 #: Less than this share of a found effect's evidence, on its joints, is what that effect's own form leaves.
 SHADOW = 0.1
-#: Of what friction does around zero speed, which is known to less.
-NEAR_ZERO, NEAR_SHADOW = ("stribeck", "presliding_hysteresis", "velocity_lag"), 0.3
+#: Of what friction does around zero speed, which is known to less; and told apart from each other by more.
+NEAR_ZERO, NEAR_SHADOW, NEAR_CLOSE = ("stribeck", "presliding_hysteresis", "velocity_lag"), 0.3, 0.25
 #: Unless a jackknife cannot shake its size by 1 %: what a form leaves varies with the motion.
 OWN = 100.0
 #: The rigid body's form is exact: what it leaves is time and gains that are off by a few percent, squared.
@@ -170,6 +170,8 @@ def likelier(order: Sequence[Scored]) -> Scored:
 def told_apart(best: Scored, other: Scored) -> bool:
     """Return whether one hypothesis is better than another by more than what recordings like these decide."""
     lead = best.evidence - other.evidence
+    if {best.candidate.effect, other.candidate.effect} <= set(NEAR_ZERO):
+        return lead >= max(APART, NEAR_CLOSE * best.evidence)
     unsteady = steadiness(best.gain - other.gain) < STEADY
     return not (lead < APART or (lead < CLOSE * best.evidence and unsteady))
 

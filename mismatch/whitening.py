@@ -17,6 +17,8 @@ from .segments import stretches
 
 Array = NDArray[np.float64]
 
+#: Kinds of rows: free motion, passing through zero speed, at rest.
+FREE, ZERO, REST = 0, 1, 2
 #: Rows that a row is predicted from at most: 0.7 s where rows are made at 15 Hz.
 ORDER = 40
 #: Independent rows that an order needs at least, so that the prediction is no fit to these rows.
@@ -60,29 +62,39 @@ def predictors(correlation: Array) -> tuple[Array, Array]:
 
 
 def root(
-    time: Array, sigma: Array, rest: NDArray[np.bool_], correlation: Array, step: float
+    time: Array, sigma: Array, kind: NDArray[np.int64], correlation: Array, step: float
 ) -> sparse.csr_array:
     """Return the matrix (n, n) that makes rows of a joint independent and of unit variance.
 
-    time (n,) s; sigma (n,): each row's scale, Nm; rest (n,): at rest, where friction is anything and a
-    whole rest counts as one row; step: s between rows, over more than which nothing is predicted.
+    time (n,) s; sigma (n,): each row's scale, Nm; kind (n,): as of `grams.regime`; step: s between rows, over
+    more than which nothing is predicted. A whole rest counts as one row: there friction is anything. What a
+    passage through zero speed leaves says nothing about the motion after it, which goes on from before it.
     """
     n = len(time)
     table, rms = predictors(correlation)
-    order = len(rms) - 1
-    known = np.zeros(n, np.int64)  # rows before that predict this one
+    order = min(len(rms) - 1, n - 1)
+    known, away = (
+        np.zeros(n, np.int64),
+        np.zeros(n, np.int64),
+    )  # rows that predict this one; or one, so far away
     weight = 1 / sigma
-    for part in stretches(~rest):
-        cuts = np.flatnonzero(np.diff(time[part]) > 1.5 * step) + 1 + part.start
-        for a, b in pairwise([part.start, *cuts.tolist(), part.stop]):
-            known[a:b] = np.minimum(np.arange(b - a), order)
-    weight[~rest] /= rms[known[~rest]]
-    for part in stretches(rest):
+    for part in stretches(kind == REST):
         weight[part] /= np.sqrt(part.stop - part.start)
+    cuts = np.flatnonzero((np.diff(kind) != 0) | (np.diff(time) > 1.5 * step)) + 1
+    last = -n  # of free motion
+    for a, b in pairwise([0, *cuts.tolist(), n]):
+        if kind[a] == REST or (a > 0 and time[a] - time[a - 1] > 1.5 * step):
+            last = -n
+        if kind[a] != REST:
+            known[a:b] = np.minimum(np.arange(b - a), order)
+        if kind[a] == FREE:
+            away[a] = a - last if a - last <= order else 0
+            last = b - 1
+    part = np.where(away > 0, correlation[away], 0.0) / correlation[0]
+    moves = kind != REST
+    weight[moves] /= (rms[known] * np.sqrt(1 - part**2))[moves]
     bands: list[Any] = [weight]
-    offsets = [0]
-    for k in range(1, min(order, n - 1) + 1):
-        before = np.where(known[k:] >= k, -table[known[k:], k - 1], 0.0)
+    for k in range(1, order + 1):
+        before = -np.where(known[k:] >= k, table[known[k:], k - 1], np.where(away[k:] == k, part[k:], 0.0))
         bands.append(before * weight[k:] * sigma[k:] / sigma[:-k])
-        offsets.append(-k)
-    return sparse.csr_array(sparse.diags(bands, offsets, shape=(n, n)))
+    return sparse.csr_array(sparse.diags(bands, [-k for k in range(order + 1)], shape=(n, n)))

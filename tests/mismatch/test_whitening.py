@@ -5,7 +5,7 @@ import pytest
 from rows_by_hand import STEP, ar1, rows
 
 from residuum.mismatch.grams import Scales, regime, roots, scales_of
-from residuum.mismatch.whitening import FLOOR, ORDER, correlation_of, predictors, root
+from residuum.mismatch.whitening import FLOOR, ORDER, REST, ZERO, correlation_of, predictors, root
 
 KEEP = 0.9
 
@@ -25,7 +25,7 @@ def dense(correlation, count: int):
 
 def test_rows_within_the_order_are_whitened_exactly() -> None:
     n, sigma = 9, np.linspace(0.5, 2.0, 9)
-    found = root(STEP * np.arange(n), sigma, np.zeros(n, bool), known(), STEP).toarray()
+    found = root(STEP * np.arange(n), sigma, np.zeros(n, int), known(), STEP).toarray()
     covariance = sigma[:, None] * dense(known(), n) * sigma
     np.testing.assert_allclose(found @ covariance @ found.T, np.eye(n), atol=1e-12)
 
@@ -33,12 +33,24 @@ def test_rows_within_the_order_are_whitened_exactly() -> None:
 def test_nothing_is_predicted_over_a_gap_or_a_rest() -> None:
     time = STEP * np.arange(12.0)
     time[6:] += 5 * STEP
-    rest = np.zeros(12, bool)
-    rest[9:11] = True
-    found = root(time, np.ones(12), rest, known(), STEP).toarray()
+    kind = np.zeros(12, int)
+    kind[9:11] = REST
+    found = root(time, np.ones(12), kind, known(), STEP).toarray()
     assert not found[6:, :6].any()  # the gap
     assert not found[9:11, :9].any() and not found[11, :11].any()
     assert found[9, 9] ** 2 + found[10, 10] ** 2 == pytest.approx(1.0)  # a rest counts once
+
+
+def test_motion_goes_on_after_a_passage_as_it_was_before() -> None:
+    """Its first row is predicted from the last one before, and no row from the passage, whose error is its own."""
+    kind = np.zeros(12, int)
+    kind[5:8] = ZERO
+    found = root(STEP * np.arange(12.0), np.ones(12), kind, known(), STEP).toarray()
+    part = KEEP**4 / (1 + FLOOR)
+    assert not found[8:, 5:8].any() and not found[5:8, :5].any()
+    assert not found[9:, :8].any()
+    assert found[8, 4] / found[8, 8] == pytest.approx(-part)
+    assert found[8, 8] == pytest.approx(1 / np.sqrt((1 + FLOOR) * (1 - part**2)))
 
 
 def test_prediction_of_one_row_is_its_correlation() -> None:

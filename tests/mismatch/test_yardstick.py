@@ -67,3 +67,12 @@ def test_a_model_without_candidates_keeps_its_fit() -> None:
     exact = np.linalg.solve(both[:-1, :-1] + np.eye(space.size), both[:-1, -1])
     found = eliminated(fit(sums, eye, sums.total), sums.total, eye.take([0]))
     assert np.allclose(found.own, exact)
+
+
+def test_a_recording_that_shows_nothing_of_a_change_says_nothing_against_it() -> None:
+    """As one that is no colder than the reference, of friction that depends on temperature."""
+    value, std = np.array([0.0, 0.01, 0.02, 0.98, 1.0, 1.01, 0.3]), np.array([0.05] * 6 + [10.0])
+    observed = np.arange(7) >= 3
+    assert Shares(value, std, observed).likelier == pytest.approx(
+        Shares(value[:-1], std[:-1], observed[:-1]).likelier, abs=0.3
+    )
