@@ -10,7 +10,6 @@ from .candidates import Candidate
 from .evidence import Evidence
 from .local import at_one_place
 from .naming import Scored, chosen, nuisance, ranked, scored, steadiness, tested
-from .passages import at_few_passages
 from .plausibility import implausible, is_short, misshapen, of_all_joints
 from .selection import Directions
 from .share import share_of
@@ -118,7 +117,6 @@ def judge(
             or shadow(test, accepted, evidence.setup.space.dof)
             or of_all_joints(weighed, fitted, test)
             or at_one_place(weighed, fitted, test)
-            or at_few_passages(weighed, fitted, test)
         )
         tries += 1
         # what is there without being a finding is fitted, or others would explain it; a curve only here,
