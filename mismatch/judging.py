@@ -31,6 +31,7 @@ RIGID = (
     "payload", "link_inertial", "rotor_inertia", "base_free", "frozen_joint_coupling", "dropped_coupling",
 )  # fmt: skip
 RIGID_SHADOW = 0.01
+MASSES = ("payload", "link_inertial", "base_free")
 #: A body, or two of them, that explain this share of what all base parameters together do have the name.
 BODIES, ALL_OF_IT = ("payload", "link_inertial", "rotor_inertia"), 0.9
 #: Bodies that are tried as the first of two.
@@ -183,6 +184,8 @@ def shadow(test: Scored, accepted: Sequence[Accepted], joints: int) -> str:
             return "with a delay friction changes its sign late as well"
         both = {first.effect, c.effect} <= set(NEAR_ZERO)
         least = max(shade(a, joints), NEAR_SHADOW * a.score.evidence if both else 0.0)
+        if first.effect in MASSES and c.effect == "drive_gain":  # a mass scales with the gains
+            least = SHADOW / joints * a.score.evidence
         small = test.evidence < least and test.consistency < OWN
         if first.joint in (None, c.joint) and small:
             return f"is {100 * test.evidence / a.score.evidence:.1f} % of what {first.effect} explains there"

@@ -1,13 +1,16 @@
 """A load that is picked up and put down: when it is there, what it weighs, and what is no such load."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from rows_by_hand import rows, scales
 
 from residuum.mismatch.carried import carried, unloaded
 from residuum.mismatch.evidence import Evidence, gather, renewed
 from residuum.mismatch.explain import Task, explain
+from residuum.mismatch.load_checks import _beside_one_joint
 from residuum.mismatch.physics import forces
 from residuum.mismatch.quantities import payload_directions, payload_numbers
 from residuum.mismatch.segments import first_guesses, joined, segmented, stretches, sums_of, two_levels
@@ -202,3 +205,16 @@ def test_explain_names_a_load_that_is_picked_up_and_put_down(recorded, with_refe
 def test_a_robot_that_picks_nothing_up_carries_nothing(recorded) -> None:
     answer = explain(Task((recorded("free", 2)[0],), (), ROBOT, DIGEST, 6, propose=False, thresholds=False))
     assert "payload" not in [f["effect"] for f in answer.findings["findings"]]
+
+
+def test_what_one_joint_in_motion_tells_is_no_load() -> None:
+    """Nats are half the weighted squares of its torque, where a joint moves, less those of the joint with most."""
+    moving = np.ones((400, 3))
+    moving[:, 2] = 0.0
+    which = rows(400, joints=3, moving=moving)
+    held = SimpleNamespace(
+        runs=(SimpleNamespace(rows=which),),
+        load=[np.tile([3.0, 0.3, 30.0], (400, 1))],
+        evidence=SimpleNamespace(noise=scales(3)),
+    )
+    assert _beside_one_joint(held) == pytest.approx(0.5 * 400 / 4 * (0.3 / 0.3) ** 2)

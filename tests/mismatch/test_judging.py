@@ -7,7 +7,7 @@ import pytest
 
 from residuum.mismatch.acceptance import EVIDENCE, SHARE, objection
 from residuum.mismatch.candidates import Candidate
-from residuum.mismatch.judging import Accepted, bodies_first, likelier, shadow
+from residuum.mismatch.judging import Accepted, bodies_first, likelier, shadow, told_apart
 from residuum.mismatch.naming import Scored
 from residuum.mismatch.plausibility import everyones, implausible
 
@@ -99,6 +99,30 @@ def test_a_delay_makes_signs_late_and_a_lag_beside_it_is_none() -> None:
     assert "%" in shadow(scored([1, 1], evidence=1.0), [Accepted(scored([9, 11]), (), (), 0.5)], 6)
     surely = scored([1, 1], evidence=1.0, consistency=340.0)
     assert shadow(surely, [Accepted(scored([9, 11]), (), (), 0.5)], 6) == ""
+
+
+def test_around_zero_speed_names_are_known_to_less() -> None:
+    """A quarter of the evidence neither parts two of them, nor is it enough for a second one beside the first."""
+    bump, late = (Candidate(x, 1, (k,)) for k, x in enumerate(("stribeck", "velocity_lag")))
+    drag = Candidate("viscous_friction", 1, (2,))
+    best = scored([50.0, 50.0], evidence=100.0, candidate=bump)
+    near, far = (scored([40.0, 40.0], evidence=e, candidate=late) for e in (80.0, 70.0))
+    assert not told_apart(best, near) and told_apart(best, far)
+    assert told_apart(best, scored([40.0, 41.0], evidence=80.0, candidate=drag))
+    first = [Accepted(best, (), (), 0.5)]
+    assert "%" in shadow(scored([9, 11], evidence=20.0, candidate=late), first, 6)
+    assert shadow(scored([9, 11], evidence=20.0, candidate=drag), first, 6) == ""
+
+
+def test_a_gain_is_no_finding_beside_a_mass_that_scales_with_it() -> None:
+    load = Accepted(
+        scored([90, 110], evidence=6000.0, candidate=Candidate("payload", None, (0,))), (), (), 0.5
+    )
+    gain, drag = (Candidate(x, 1, (k,)) for k, x in enumerate(("drive_gain", "viscous_friction"), 1))
+    small, large = 80.0, 120.0  # nats; a tenth of the load's on each of six joints is 100
+    assert "%" in shadow(scored([9, 11], evidence=small, candidate=gain), [load], 6)
+    assert shadow(scored([9, 11], evidence=large, candidate=gain), [load], 6) == ""
+    assert shadow(scored([9, 11], evidence=small, candidate=drag), [load], 6) == ""
 
 
 def test_what_acts_at_reversals_need_not_improve_blocks_without_any() -> None:
