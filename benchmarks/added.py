@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from residuum.mismatch.candidates import Candidate
 from residuum.mismatch.columns import WIDTH, Column, Space, space_of
 from residuum.mismatch.evidence import Evidence
+from residuum.mismatch.judging import SYNCHRONOUS
 from residuum.mismatch.proof import joint_moves, rms_where
 from residuum.mismatch.rows import make_rows
 from residuum.recordings import Recording
@@ -51,6 +52,7 @@ class Case:
     joint: int | None
     size: float
     added: Added
+    scale: float = 1.0  # of what was drawn
 
     @property
     def family(self) -> str:
@@ -124,8 +126,10 @@ def cases(
             order = rng.permutation(len(some))
             for k in range(repeats):
                 c = some[order[k % len(some)]]
-                torque = torques(evidence, _mixed(evidence, c, rng))
-                found.append(_scaled(name, c.joint, size, torque, sight))
+                vector = _mixed(evidence, c, rng)
+                case = _scaled(name, c.joint, size, torques(evidence, vector), sight)
+                if name != "time_delay" or case.scale * vector.max() >= SYNCHRONOUS:
+                    found.append(case)
     return found
 
 
@@ -199,4 +203,5 @@ class _Sight:
 def _scaled(name: str, joint: int | None, size: float, torque: Sequence[Array], sight: _Sight) -> Case:
     """Bring an effect to a size."""
     ratio = sight.ratio(torque)
-    return Case(name, joint, size, tuple(x * size / max(ratio, 1e-12) for x in torque))
+    scale = size / max(ratio, 1e-12)
+    return Case(name, joint, size, tuple(x * scale for x in torque), scale)

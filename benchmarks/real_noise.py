@@ -6,7 +6,8 @@ What the recordings lack by themselves is found first and taken off (masses and 
 Then one effect at a time is added to the filtered torque of every run, with nonlinear values that stand on
 no grid. Its size is the rms of what base parameters, offset, Coulomb and viscous friction leave of it
 (--whole: of all of it) over the residual's rms, both where the joint moves.
-Late signs and presliding come at the joint's Coulomb level, and only where some travel or time has the size.
+Late signs and presliding come at the joint's Coulomb level, and only where some travel or time has the size;
+a delay only where it is longer than what is no fault (judging.SYNCHRONOUS).
 Beside it a plain leave-one-run-out namer answers the same cases (`crude.py`).
 Right: the first new name is of the effect's family, on its joint where it has one. Payloads, links and rotors
 are not among them: without a reference the base parameters of this arm are free, and hold them; nor are

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, minimum_filter1d, uniform_filter1d
 
-from .evidence import Evidence, renewed, weighed
+from .evidence import Evidence, evenly_weighed, renewed, weighed
 from .grams import Scales, evenly, regime, scales_of
 from .held import TEN, WIDTHS, Held, LoadedRun, fitted
 from .load_checks import AGREE, LEAST, objection, same_load
@@ -64,7 +64,7 @@ def carried(evidence: Evidence) -> Carried | None:
     First guesses are those of the plain arm, and then those of the arm with every hypothesis: what is wrong
     all the time may hide the load from the one, and the other may take the load for its own.
     """
-    evidence = weighed(replace(evidence, scales=evenly(evidence.scales)), evenly(evidence.noise))
+    evidence = evenly_weighed(evidence)
     runs = tuple(
         LoadedRun(rows, payload_columns(evidence, rows))
         for rows in (evidence.runs[r] for r in observed_runs(evidence))

@@ -15,7 +15,7 @@ from ..robots.model import Model
 from .candidates import Candidates, candidates, curve_columns, own_columns
 from .columns import BASELINE, REPEAT, SLACK, WIDTH, Column, Space, space_of
 from .flexible import ranges
-from .grams import Fold, Scales, equal_scales, folds_of, scales_of, whole
+from .grams import Fold, Scales, equal_scales, evenly, folds_of, scales_of, whole
 from .lacking import SHARE, dropped_of, frozen_of, widths
 from .physics import physics_of
 from .repeats import repeated, views
@@ -149,9 +149,16 @@ def _states(runs: Sequence[Rows]) -> tuple[Array, Array, Array, Array]:
 
 def weighed(evidence: Evidence, scales: Scales) -> Evidence:
     """Weigh the observed rows by other scales."""
-    space = evidence.setup.space
-    folds = folds_of(evidence.runs, evidence.observed, evidence.scales, space, observed_scales=scales)
-    return replace(evidence, folds=tuple(folds), observed_scales=scales)
+    mine = folds_of(evidence.runs, evidence.observed, scales, evidence.setup.space, sides=[True])
+    theirs = [f for f in evidence.folds if not f.observed]
+    return replace(evidence, folds=(*mine, *theirs), observed_scales=scales)
+
+
+def evenly_weighed(evidence: Evidence) -> Evidence:
+    """Weigh the rows of both sides so that slow and fast residuals count alike."""
+    scales, mine = evenly(evidence.scales), evenly(evidence.noise)
+    folds = folds_of(evidence.runs, evidence.observed, scales, evidence.setup.space, observed_scales=mine)
+    return replace(evidence, folds=tuple(folds), scales=scales, observed_scales=mine)
 
 
 def _lifted(base: Array, space: Space) -> Array:

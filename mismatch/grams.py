@@ -105,14 +105,14 @@ def _alike(which: Indices, inflation: float) -> Array:
 
 def folds_of(
     runs: Sequence[Rows], observed: Sequence[bool], scales: Scales, space: Space,
-    observed_scales: Scales | None = None,
+    observed_scales: Scales | None = None, sides: Sequence[bool] = (True, False),
 ) -> list[Fold]:  # fmt: skip
     """Cut runs into blocks of equal length, at most about FOLDS a side, and sum each.
 
-    observed_scales: of the observed runs, when they are not those of all.
+    observed_scales: of the observed runs, when they are not those of all. sides: which are wanted.
     """
     found, fast = [], _fast_columns(space)
-    for side in (True, False):
+    for side in sides:
         used = (observed_scales or scales) if side else scales
         whiten = {r: roots(runs[r], used) for r, _ in blocks(runs, observed, side)}
         for r, part in blocks(runs, observed, side):

@@ -10,7 +10,7 @@ from .candidates import Candidate
 from .evidence import Evidence
 from .local import at_one_place
 from .naming import Scored, chosen, nuisance, ranked, scored, steadiness, tested
-from .plausibility import implausible, is_short, misshapen, of_all_joints
+from .plausibility import NEAR_ZERO, implausible, is_short, misshapen, of_all_joints
 from .selection import Directions
 from .share import share_of
 
@@ -23,7 +23,7 @@ RELATED = 0.2
 #: Less than this share of a found effect's evidence, on its joints, is what that effect's own form leaves.
 SHADOW = 0.1
 #: Of what friction does around zero speed, which is known to less; and told apart from each other by more.
-NEAR_ZERO, NEAR_SHADOW, NEAR_CLOSE = ("stribeck", "presliding_hysteresis", "velocity_lag"), 0.3, 0.25
+NEAR_SHADOW, NEAR_CLOSE = 0.3, 0.25
 #: Unless a jackknife cannot shake its size by 1 %: what a form leaves varies with the motion.
 OWN = 100.0
 #: The rigid body's form is exact: what it leaves is time and gains that are off by a few percent, squared.

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from .evidence import Evidence, residual
 from .grams import roots
 from .naming import Scored, chosen
+from .plausibility import NEAR_ZERO
 from .refit import observed_runs, parameters
 from .rows import Rows
 from .selection import Directions
@@ -27,10 +28,11 @@ MOST, SURE = 0.5, 4.0
 def at_one_place(weighed: Evidence, model: Directions, test: Scored) -> str:
     """Return in words that a joint's hypothesis, as an addition to a model, gains at one place; or nothing.
 
-    weighed: by what it leaves. Ripple is left out, which is seen in the fast band.
+    weighed: by what it leaves. Left out are ripple, which is seen in the fast band, and what acts around zero
+    speed: joints turn round where their paths do, and nowhere else.
     """
     c = test.candidate
-    if c.joint is None or c.effect == "torque_ripple":
+    if c.joint is None or c.effect in ("torque_ripple", *NEAR_ZERO):
         return ""
     q, gain, acts = np.concatenate(
         [np.stack([rows.q[:, c.joint], *both]) for rows, *both in gains(weighed, model, test, c.joint)],

@@ -10,6 +10,8 @@ from .selection import Directions
 NO_WAVE = 0.5
 #: Nats by which a curve that is no physics leads, to be believed in its place.
 _LEADS = 10.0
+#: What friction does around zero speed alone.
+NEAR_ZERO = ("stribeck", "presliding_hysteresis", "velocity_lag")
 #: What builds up with travel or late is much of the Coulomb level, or it is something else; over less travel
 #: (rad) than the catalogue's, which every gear shows a little of, more of it. A reference holds what every
 #: gear has: a change may be small.
