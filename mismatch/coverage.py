@@ -12,7 +12,7 @@ from .repeats import share
 #: s of motion below which nothing is named; rad of travel below which a joint stands.
 _SHORTEST, _TRAVEL = 5.0, 0.05
 #: Hz; below it reversals, delay and elasticity are out of sight.
-_SLOW = 60.0
+SLOW = 60.0
 #: Share of the motion that has to be the reference's as well, for all that a reference can show.
 _SAME = 0.5
 
@@ -70,7 +70,7 @@ def cannot_show(evidence: Evidence, recordings: Sequence[Recording]) -> Lacks:
 
 def _of_rate(rates: Sequence[float]) -> list[str]:
     slowest = min(rates)
-    if slowest >= _SLOW:
+    if slowest >= SLOW:
         return []
     return [
         f"delay, elasticity, backlash and what happens at reversals: {slowest:.0f} Hz is too slow for them"

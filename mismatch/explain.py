@@ -18,7 +18,7 @@ from .answer import compose
 from .carried import Carried, carried, unloaded
 from .coverage import cannot_show
 from .episodes import episodes
-from .evidence import Evidence, gather, residual
+from .evidence import Evidence, evenly_weighed, gather, residual
 from .judging import Judged, judge
 from .lacking import full_of
 from .limits import with_thresholds
@@ -29,7 +29,7 @@ from .placebo import placebo_rate
 from .proof import joint_moves, prove, rms_where
 from .pushes import Pushed, pushed, released, with_pushes
 from .refine import plain, refined, unnamed
-from .refit import LeftOut, observed_runs, parameters
+from .refit import LeftOut, left_out, observed_runs, parameters
 from .refusal import bad_data
 from .regions import regions
 from .result import Explanation, NextMotion, Proof, Source
@@ -134,7 +134,9 @@ def _explained(
     progress("proof on left-out blocks")
     kept = [a for a in judged.accepted if a.is_finding or not evidence.has_reference]
     whole = plain(weighed, kept)[0]
-    proof, before, after = _proved(t, weighed, unnamed(weighed, kept), whole)
+    bare = unnamed(weighed, kept)
+    proof, before, after = _proved(t, weighed, bare, whole)
+    lighter = rms_where(left_out(weighed, bare).residual, joint_moves(weighed)) if t.load else None
     gear = float(task.robot.joint[0].gear)
     places = regions(runs, names, before.residual, gear)
     progress("placebos")
@@ -151,7 +153,7 @@ def _explained(
     parts = Parts(
         task.robot, nominal, sources, evidence, judged, sharp, found, runs, left, t.push, strange, proof,
         before, after, rate, tuple(places), names, lacks, model,
-        _proposal(task, weighed, judged, progress), t.load,
+        _proposal(task, weighed, judged, progress), t.load, lighter,
     )  # fmt: skip
     return compose(parts)
 
@@ -162,7 +164,9 @@ def _proved(
     """Prove on the rows without pushes; what both models leave is of all rows."""
     first = weighed
     if t.load:
-        first = reweighed(released(t.recorded, t.push) if t.push else t.recorded, baseline)
+        # a load that comes and goes is slow: it would hide what is as slow from the fit without it
+        loaded = evenly_weighed(released(t.recorded, t.push) if t.push else t.recorded)
+        first = reweighed(loaded, baseline, even=True)
     proof, before, after = prove(weighed, baseline, whole, first)
     if t.push is None:
         return proof, before, after

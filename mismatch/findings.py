@@ -108,12 +108,9 @@ def _carried(p: Parts, load: Carried) -> dict[str, Any]:
 
 def _carried_share(p: Parts, j: int) -> float:
     """Share of a joint's unexplained left-out variance that the load takes where it is held."""
-    if p.carried is None:
+    if p.unloaded is None:
         return 0.0
-    left = np.concatenate([e[:, j] for e in p.before.residual])
-    load = np.concatenate([t[:, j] for t in p.carried.torque])
-    rest = float(np.sum((left - load) ** 2)) / max(float(np.sum(left**2)), 1e-12)
-    return float(np.clip(1 - rest, 0, 1))
+    return float(np.clip(1 - (p.unloaded[j] / max(p.proof.before[j], 1e-12)) ** 2, 0, 1))
 
 
 def _contact(p: Parts, found: Pushed) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from functools import partial
 from . import yardstick
 from .acceptance import EVIDENCE, STEADY, objection
 from .candidates import Candidate
+from .coverage import SLOW
 from .evidence import Evidence
 from .local import at_one_place
 from .naming import Scored, chosen, nuisance, ranked, scored, steadiness, tested
@@ -46,6 +47,8 @@ _FIRST = {
 MOST, TRIES = 6, 10
 #: Without a reference: fitted anyway, or only a matter of which masses are believed.
 UNSEEN = ("coulomb_friction", "viscous_friction", "drive_gain")
+#: What recordings slower than coverage.SLOW cannot show.
+FAST = ("time_delay", "joint_elasticity", "backlash", *NEAR_ZERO)
 #: s; current and motion may be less than this apart without anything being wrong: a cycle and a half.
 SYNCHRONOUS = 0.003
 
@@ -94,6 +97,8 @@ def judge(
     """
     model = known.model if known else nuisance(evidence)
     skip = ("base_free",) if evidence.has_reference else UNSEEN
+    if max(r.step for r in evidence.runs) > 2.001 / SLOW:  # rows are made at half the rate (track.py)
+        skip = (*skip, *FAST)
     accepted, refused = list[Accepted](), list[tuple[Scored, str]]()
     barred, hollow, bent = set[Key](), set[Key](), list[int]()
     tries = 0

@@ -14,7 +14,7 @@ from scipy import sparse
 from .candidates import Candidate
 from .columns import BASELINE, REPEAT, Column, Space
 from .evidence import Evidence, residual, weighed
-from .grams import Scales, scales_of
+from .grams import Scales, evenly, scales_of
 from .lacking import widths
 from .refit import observed_runs, parameters
 from .repeats import coefficients
@@ -145,8 +145,11 @@ def _rich(evidence: Evidence) -> Directions:
     return model(share, free)
 
 
-def reweighed(evidence: Evidence, model: Directions) -> Evidence:
-    """Weigh the observed rows by what a model leaves of them: their scale by regime, and its memory."""
+def reweighed(evidence: Evidence, model: Directions, even: bool = False) -> Evidence:
+    """Weigh the observed rows by what a model leaves of them: their scale by regime, and its memory.
+
+    even: slow and fast residuals count alike.
+    """
     space = evidence.setup.space
     seen = [evidence.runs[r] for r in observed_runs(evidence)]
     for _ in range(2):
@@ -156,7 +159,7 @@ def reweighed(evidence: Evidence, model: Directions) -> Evidence:
             own[coefficients(space)] = 0.0
             alone = scales_of(seen, [residual(r, space, own) for r in seen])
             scales = _no_less(scales, evidence.scales, scales.sigma / alone.sigma)
-        evidence = weighed(evidence, scales)
+        evidence = weighed(evidence, evenly(scales) if even else scales)
     return evidence
 
 
@@ -164,12 +167,13 @@ def _no_less(scales: Scales, reference: Scales, new: Array) -> Scales:
     """Return scales no less than the reference's, but for what came back; new (N, 3): what did not of it."""
     new = np.minimum(new, 1.0)
     memory = 1 + new[:, 0] * (reference.inflation - 1)
-    longer = zip(scales.inflation >= memory, scales.correlation, reference.correlation, strict=True)
+    theirs = reference.correlation or scales.correlation
+    longer = zip(scales.inflation >= memory, scales.correlation, theirs, strict=True)
     return Scales(
         np.maximum(scales.sigma, new * reference.sigma),
         np.maximum(scales.inflation, memory),
         np.maximum(scales.fast, reference.fast),
-        tuple(own if keeps else theirs for keeps, own, theirs in longer),
+        tuple(own if keeps else other for keeps, own, other in longer),
     )
 
 

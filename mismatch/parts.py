@@ -27,7 +27,7 @@ class Parts:
     """Everything that was found out.
 
     evidence: of the rows without pushes; runs, left, before, after: of all rows of the observed runs. left:
-    what all names leave (n, N), Nm.
+    what all names leave (n, N), Nm. unloaded (N,): the error before, once the carried load is off, Nm.
     """
 
     robot: Robot
@@ -51,3 +51,4 @@ class Parts:
     model: Model
     next_motion: NextMotion | None = None
     carried: Carried | None = None
+    unloaded: Array | None = None
