@@ -60,9 +60,9 @@ def _evidence(evidence: Evidence, model: Directions, joint: int, columns: Sequen
             edge = min(round(SHORTEST / rows.step), len(rows) // 3)
             shift = int(rng.integers(edge, max(len(rows) - edge, edge + 1)))
             plain = rows.columns[joint] @ combine
-            own, moved = root @ plain, root @ np.roll(plain, shift, axis=0)
-            same += float(np.sum(own * moved))
-            whole += float(np.sum(own**2))
+            still, moved = root @ plain, root @ np.roll(plain, shift, axis=0)
+            same += float(np.sum(still * moved))
+            whole += float(np.sum(still**2))
             cross = cross + rows.columns[joint].T @ (root.T @ moved)
             square = square + moved.T @ moved
             right = right + moved.T @ (root @ e)
