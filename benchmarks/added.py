@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from residuum.mismatch.candidates import Candidate
 from residuum.mismatch.columns import WIDTH, Column, Space, space_of
 from residuum.mismatch.evidence import Evidence
-from residuum.mismatch.judging import SYNCHRONOUS
+from residuum.mismatch.plausibility import SYNCHRONOUS
 from residuum.mismatch.proof import joint_moves, rms_where
 from residuum.mismatch.rows import make_rows
 from residuum.recordings import Recording
@@ -145,6 +145,8 @@ def _possible(evidence: Evidence, effect: str, sight: "_Sight") -> list[Candidat
     """
     found = []
     for c in (c for c in evidence.found.each if c.effect == effect):
+        if effect == "time_delay" and c.joint is not None:  # a clock's, which moves all
+            continue
         directions = evidence.found.directions.take(c.columns)
         torque = torques(evidence, np.asarray(directions.vectors @ (2 * directions.std)))
         if sight.ratio(torque) >= SIZES[-1]:

@@ -7,7 +7,7 @@ Then one effect at a time is added to the filtered torque of every run, with non
 no grid. Its size is the rms of what base parameters, offset, Coulomb and viscous friction leave of it
 (--whole: of all of it) over the residual's rms, both where the joint moves.
 Late signs and presliding come at the joint's Coulomb level, and only where some travel or time has the size;
-a delay only where it is longer than what is no fault (judging.SYNCHRONOUS).
+a delay only where it is longer than what is no fault (plausibility.SYNCHRONOUS).
 Beside it a plain leave-one-run-out namer answers the same cases (`crude.py`).
 Right: the first new name is of the effect's family, on its joint where it has one. Payloads, links and rotors
 are not among them: without a reference the base parameters of this arm are free, and hold them; nor are

@@ -77,6 +77,55 @@ def project(
     return projected, distance
 
 
+def unlike_a_body(
+    estimate: Array, information: Array, mapping: Array, before: Array, heaviest: float
+) -> float:
+    """Return by how many nats a change (k,) is likelier than the nearest that a body can have.
+
+    information (k, k): of the estimate; mapping (k, 10): change by a body's parameters; before (10,): the
+    body before the change (zeros: there was none), which has to be one after it, too. heaviest: its mass
+    then, kg, at most: of a mass without bounds any first moment is possible.
+    """
+    k = len(estimate)
+    root = np.linalg.cholesky(information).T
+    scale = max(float(np.linalg.norm(root @ estimate)), 1e-12)
+    program = _one_body()
+    program.root.value, program.start.value = np.zeros((10, 10)), np.zeros(10)
+    program.root.value[:k], program.start.value[:k] = root @ mapping / scale, root @ estimate / scale
+    program.before.value, program.heaviest.value = before, heaviest
+    program.problem.solve(solver="CLARABEL")
+    if program.change.value is None:
+        raise RuntimeError("no body near the change was found")
+    missed = program.root.value @ program.change.value - program.start.value
+    return float(0.5 * scale**2 * missed @ missed)
+
+
+@dataclass(frozen=True)
+class _OneBody:
+    """A cone program: minimise |root @ change - start| where before + change is a body."""
+
+    problem: Any
+    change: Any
+    root: Any
+    start: Any
+    before: Any
+    heaviest: Any
+
+
+@lru_cache(maxsize=1)
+def _one_body() -> _OneBody:
+    import cvxpy
+
+    cp: Any = cvxpy
+    change = cp.Variable(10)
+    root, start, before = cp.Parameter((10, 10)), cp.Parameter(10), cp.Parameter(10)
+    heaviest = cp.Parameter()
+    cost = cp.sum_squares(root @ change - start) + _SMALL * cp.sum_squares(change)
+    after = before + change
+    problem = cp.Problem(cp.Minimize(cost), [_pseudo_inertia(after, cp) >> 0, after[0] <= heaviest])
+    return _OneBody(problem, change, root, start, before, heaviest)
+
+
 @dataclass(frozen=True)
 class _Program:
     """A cone program: minimise |root @ step| where start + scale * step is physical."""

@@ -4,6 +4,7 @@ import numpy as np
 
 from .naming import Scored
 from .plausibility import AT_REVERSALS
+from .share import Share
 
 #: Nats on left-out data and all data: odds of e^10 against, for a few hundred hypotheses tried.
 EVIDENCE = 10.0
@@ -23,9 +24,11 @@ BLOWS = 3.0
 #: A named effect explains at least this share of what its joint's model leaves (0.07 of its rms): less is of
 #: no use to anyone.
 SHARE = 0.005
+#: Or its own torque is this share, and no block shakes its size: then the baseline had bent to imitate it.
+LARGE = 0.1
 
 
-def objection(test: Scored, part: float) -> str:
+def objection(test: Scored, part: Share) -> str:
     """Return in words why a hypothesis is not believed, or nothing."""
     if test.candidate.effect == "backlash":
         return _objection_to_blows(test, part)
@@ -41,8 +44,8 @@ def objection(test: Scored, part: float) -> str:
         return f"not steady over the recordings (t = {test.steadiness:.1f})"
     if test.improved < (0.5 if sure or unshaken else IMPROVED) and not rare:
         return f"improves only {100 * test.improved:.0f} % of the left-out parts"
-    if part < SHARE:
-        return f"explains only {100 * part:.1f} % of what is left"
+    if part.explained < SHARE and not (unshaken and part.own > LARGE):
+        return _too_small(part)
     return ""
 
 
@@ -53,14 +56,20 @@ def _tells_when_it_tells(test: Scored) -> bool:
     return test.candidate.effect in AT_REVERSALS and enough and float(np.mean(telling > 0)) >= ALWAYS
 
 
-def _objection_to_blows(test: Scored, part: float) -> str:
+def _objection_to_blows(test: Scored, part: Share) -> str:
     """Return in words why slack is not believed, or nothing.
 
     A blow lasts 20 ms: blocks in which it comes gain or, where it is mistimed, lose more than all the others,
-    so neither gain nor size is steady. Instead its size has to be that of the gap (`implausible`).
+    so neither gain nor size is steady. Instead its size has to be that of the gap (`implausible`); most blocks
+    gain, or no block shakes it.
     """
     if test.evidence < BLOWS * EVIDENCE or test.total < EVIDENCE:
         return f"evidence {min(test.evidence, test.total):.1f} nats, {BLOWS * EVIDENCE:g} asked"
-    if test.improved < IMPROVED:
+    sure = test.total >= BLOWS * EVIDENCE and test.consistency >= SURE
+    if test.improved < IMPROVED and not sure:
         return f"improves only {100 * test.improved:.0f} % of the left-out parts"
-    return f"explains only {100 * part:.1f} % of what is left" if part < SHARE else ""
+    return _too_small(part) if part.explained < SHARE else ""
+
+
+def _too_small(part: Share) -> str:
+    return f"explains only {100 * part.explained:.1f} % of what is left"

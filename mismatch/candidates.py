@@ -11,8 +11,10 @@ from scipy import sparse
 from ..symbolic.terms import CATALOGUE
 from .columns import (
     BASELINE,
+    DELAYS,
     GAPS,
     GRIDS,
+    LATE,
     NO_PHYSICS,
     ORDERS,
     REPEAT,
@@ -27,7 +29,6 @@ from .columns import (
 from .flexible import names as curve_names
 from .lacking import DROPPED, FROZEN
 from .physics import Physics
-from .rows import DELAYS
 from .selection import Directions
 
 Array = NDArray[np.float64]
@@ -65,6 +66,7 @@ def own_columns(gear: float) -> tuple[Column, ...]:
         found += [Column(term, p, values + width) for values in tried for p in entry.linear_in]
     found += [Column("coulomb", "Fc", (("width", w),)) for w in SOFT]
     found += [Column(SLACK, "gap", (("gap", x),)) for x in GAPS]
+    found += [Column(LATE, "d", (("around", x),)) for x in DELAYS]
     found += [Column("ripple", p, (("n", k * gear),)) for k in ORDERS for p in ("A", "B")]
     found.append(Column(REPEAT, "rho"))
     return tuple(found)
@@ -84,11 +86,12 @@ _PLAIN = {
     "position_dependent": "position_dependent_friction",
     "presliding": "presliding_hysteresis", "lag": "velocity_lag", "ripple": "torque_ripple",
     "gain": "drive_gain", "asymmetric": "friction_asymmetry", "offset": "current_offset",
+    LATE: "time_delay",
 }  # fmt: skip
 #: What a term cannot be told without: where a spring rests, friction where its temperature changes nothing.
 _BESIDE = {"spring": ("offset",), "temperature_dependent": ("coulomb", "viscous")}
 #: Whose coefficient cannot be negative when nothing was known of it before.
-_POSITIVE = ("presliding", "lag", "load_dependent", "stribeck", "spring")
+_POSITIVE = ("presliding", "lag", "load_dependent", "stribeck", "spring", LATE)
 
 
 @dataclass(frozen=True)

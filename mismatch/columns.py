@@ -53,6 +53,10 @@ GRIDS: Mapping[tuple[str, str], tuple[float, ...]] = {
 #: The column of slack, which is no term of a joint alone; half its width (rad), neighbours mix.
 SLACK = "slack"
 GAPS = (0.00025, 0.0005, 0.001, 0.002, 0.004, 0.008, 0.016)
+#: The column of a current that comes late on its joint alone, no term either; s, near which its coefficient
+#: is the delay.
+LATE = "late"
+DELAYS = (0.004, 0.01, 0.02)
 #: The column of what the reference's model left where the reference did the same; no term either.
 REPEAT = "repeat"
 #: Columns that describe and are no physics.

@@ -13,7 +13,7 @@ from ..recordings import Recording
 from ..robots import Robot
 from ..robots.model import Model
 from .candidates import Candidates, candidates, curve_columns, own_columns
-from .columns import BASELINE, REPEAT, SLACK, WIDTH, Column, Space, space_of
+from .columns import BASELINE, LATE, REPEAT, SLACK, WIDTH, Column, Space, space_of
 from .flexible import ranges
 from .grams import Fold, Scales, equal_scales, evenly, folds_of, scales_of, whole
 from .lacking import SHARE, dropped_of, frozen_of, widths
@@ -107,6 +107,7 @@ def gather(
     common_std = {
         "encoder": 0.05, "elasticity": 1e-3, "tilt": 0.2, "delay": 0.05, "lacking": SHARE,
     }  # fmt: skip
+    own_std[:, [c.term == LATE for c in setup.space.own]] = common_std["delay"]
     changed = not all(sides)
     found = candidates(setup.space, physics, own_std, common_std, base_std, limits.load, changed)
     progress("noise")

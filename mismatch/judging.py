@@ -6,12 +6,13 @@ from functools import partial
 
 from . import yardstick
 from .acceptance import EVIDENCE, STEADY, objection
+from .bodies import bodiless
 from .candidates import Candidate
 from .coverage import SLOW
 from .evidence import Evidence
 from .local import at_one_place
 from .naming import Scored, chosen, nuisance, ranked, scored, steadiness, tested
-from .plausibility import NEAR_ZERO, implausible, is_short, misshapen, of_all_joints
+from .plausibility import NEAR_ZERO, SYNCHRONOUS, implausible, is_short, misshapen, of_all_joints
 from .selection import Directions
 from .share import share_of
 
@@ -49,8 +50,6 @@ MOST, TRIES = 6, 10
 UNSEEN = ("coulomb_friction", "viscous_friction", "drive_gain")
 #: What recordings slower than coverage.SLOW cannot show.
 FAST = ("time_delay", "joint_elasticity", "backlash", *NEAR_ZERO)
-#: s; current and motion may be less than this apart without anything being wrong: a cycle and a half.
-SYNCHRONOUS = 0.003
 
 
 @dataclass(frozen=True)
@@ -121,6 +120,7 @@ def judge(
             objection(test, part)
             or implausible(evidence, test)
             or shadow(test, accepted, evidence.setup.space.dof)
+            or bodiless(weighed, fitted, test)
             or of_all_joints(weighed, fitted, test)
             or at_one_place(weighed, fitted, test)
         )
@@ -136,7 +136,7 @@ def judge(
             refused.append((test, why))
             continue
         alike, rivals = _rivals(evidence, fitted, best, [o for o in every if o.candidate.key not in hollow])
-        accepted.append(Accepted(test, alike, rivals, part))
+        accepted.append(Accepted(test, alike, rivals, part.explained))
         model = chosen(model, evidence, best.candidate)
     return Judged(tuple(accepted), model, tuple(refused))
 
@@ -185,7 +185,8 @@ def shadow(test: Scored, accepted: Sequence[Accepted], joints: int) -> str:
     c = test.candidate
     for a in accepted:
         first = a.score.candidate
-        if first.effect == "time_delay" and (c.effect == "velocity_lag" or is_short(c)):
+        late = first.effect == "time_delay" and first.joint in (None, c.joint)
+        if late and (c.effect == "velocity_lag" or is_short(c)):
             return "with a delay friction changes its sign late as well"
         both = {first.effect, c.effect} <= set(NEAR_ZERO)
         least = max(shade(a, joints), NEAR_SHADOW * a.score.evidence if both else 0.0)

@@ -15,7 +15,7 @@ from ..codegen.regressors import Regressor, regressor
 from ..identify.physical import LinkMap, link_map
 from ..robots import Robot
 from ..robots.model import Model
-from ..symbolic.nominal import nominal_model, robot_arm
+from ..symbolic.nominal import nominal_model, robot_arm, with_wrist_locked
 
 Array = NDArray[np.float64]
 
@@ -39,13 +39,15 @@ class Gravity:
 class Physics:
     """An arm's regressor, published base parameters (B,), the map from links, and gravity by axis.
 
-    reflected (N,): the published rotors' inertias on the side of the joint, kg m^2.
+    reflected (N,): the published rotors' inertias on the side of the joint, kg m^2; links (N, 10): the
+    published links' own parameters, in the map's order.
     """
 
     regressor: Regressor
     published: Array
     map: LinkMap
     reflected: Array
+    links: Array
     axes: tuple[Gravity, ...]
     strength: float  # m/s^2
 
@@ -89,7 +91,11 @@ def _physics(model_json: str, robot_json: str) -> Physics:
         axes.append(Gravity(*published(nominal), _masses(nominal)))
     mapping = link_map(model)
     reflected = np.array([j.reflected_inertia for j in robot.joint[: model.dof]])
-    return Physics(found, own, mapping, reflected, tuple(axes), strength)
+    bodies = with_wrist_locked(
+        robot, model.dof, model.locked_angles or (0.0,) * (len(robot.joint) - model.dof)
+    )
+    links = np.array([b.parameters for b in bodies], np.float64)
+    return Physics(found, own, mapping, reflected, links, tuple(axes), strength)
 
 
 def _masses(model: Model) -> Array:

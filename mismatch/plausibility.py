@@ -25,8 +25,10 @@ _WHOLE, _AHEAD = 0.8, 1.7
 _LEAST_GAP = 0.3
 #: Nm/rad; a third of the catalogue's softest gear.
 SOFTEST = 1e3
+#: s; current and motion may be less than this apart without anything being wrong: a cycle and a half.
+SYNCHRONOUS = 0.003
 #: A rotor is there: it may have lost this part of its published inertia.
-LOST = 0.6
+LOST = 0.9
 
 
 def implausible(evidence: Evidence, test: Scored) -> str:
@@ -36,6 +38,8 @@ def implausible(evidence: Evidence, test: Scored) -> str:
         return f"moves the arm {times:.2g} times as much as such a gap does"
     if c.effect == "joint_elasticity" and test.size[0] * SOFTEST > 1:
         return f"a stiffness of {1 / test.size[0]:.0f} Nm/rad is no gear's"
+    if c.effect == "time_delay" and c.joint is not None and test.size[0] < SYNCHRONOUS:
+        return f"{1e3 * test.size[0]:.1f} ms late is as recorders have it"
     if c.effect == "rotor_inertia" and c.joint is not None:
         whole = evidence.setup.physics.reflected[c.joint]
         if whole > 0 and test.size[0] < -LOST * whole:

@@ -12,11 +12,10 @@ from ..robots import Robot
 from ..robots.model import Covariance, Model, TermData
 from ..symbolic.terms import CATALOGUE
 from ..symbolic.tilt import tilted
-from .columns import BASELINE
+from .columns import BASELINE, DELAYS, LATE
 from .evidence import Evidence
 from .judging import Accepted
 from .naming import TIGHT
-from .rows import DELAYS
 from .selection import Directions, normal_equations
 
 Array = NDArray[np.float64]
@@ -201,7 +200,11 @@ def _shared_terms(
     Slack has none: its blow is seen, and no term of a joint alone makes it.
     """
     space, c = evidence.setup.space, a.score.candidate
-    if c.effect == "time_delay":
+    if c.effect == "time_delay" and c.joint is not None:
+        k = next(k for k, x in enumerate(space.own) if x.term == LATE and x.values == c.values)
+        at = space.own_index(c.joint, k)
+        yield "delay", c.joint, {"d": (full[at], std[at])}
+    elif c.effect == "time_delay":
         value = dict(c.values)
         kind = "jerk" if value["jerk"] else "delay"
         at = space.common_index(f"{kind}{DELAYS.index(value['around']) + 1}")

@@ -16,7 +16,7 @@ from ..identify.kernel import Filter, Kernel, batches, portions, segments
 from ..identify.rows import GAP, REST
 from ..recordings import Recording
 from . import signs
-from .columns import REPEAT, WIDTH, Space
+from .columns import DELAYS, LATE, REPEAT, WIDTH, Space
 from .fast import Fast, fast_band
 from .flexible import curves
 from .lacking import Lacking
@@ -26,8 +26,6 @@ Array = NDArray[np.float64]
 
 #: Rows whose samples are worked on together.
 _PORTION = 300
-#: s; delays at which the torque's own change is taken, so that a coefficient is a delay near each.
-DELAYS = (0.004, 0.01, 0.02)
 #: Nm; a drive's torque within this has no sign.
 DRIVE = 0.02
 #: What rows hold by joint, (n, N).
@@ -104,6 +102,8 @@ def _own(track: Track, part: slice, setup: Setup) -> Array:
             continue
         elif c.term == REPEAT:
             found.append(np.zeros_like(direction))  # of what other recordings leave: evidence.py
+        elif c.term == LATE:
+            found.append(_late(track, part, _swift_torque(track, part, setup), c.value["around"]))
         elif remembers(c.term):
             found.append(track.held[part, :, held])
             held += 1
@@ -130,6 +130,17 @@ def _torque(track: Track, part: slice, setup: Setup) -> Array:
     return np.asarray(track.motor[part] + dry + setup.friction[:, 1] * qd, np.float64)
 
 
+def _swift_torque(track: Track, part: slice, setup: Setup) -> Array:
+    """Drive torque (T, N) without its noise."""
+    return np.asarray(_torque(track, part, setup) - track.motor[part] + track.swift[part], np.float64)
+
+
+def _late(track: Track, part: slice, torque: Array, delay: float) -> Array:
+    """Return what a torque (T, N) differs by when it comes late, per second of delay."""
+    t = track.time[part]
+    return np.asarray((between(np.maximum(t - delay, t[0]), t, torque) - torque) / delay, np.float64)
+
+
 def _common(track: Track, part: slice, setup: Setup) -> tuple[Array, Array]:
     """Columns that act on all joints: what is differentiated and what is kept, each (T, N, S)."""
     n, t = setup.physics.dof, track.time[part]
@@ -153,7 +164,7 @@ def _common(track: Track, part: slice, setup: Setup) -> tuple[Array, Array]:
     for torque in (track.steady[part], _torque(track, part, setup) - track.motor[part], track.swift[part]):
         for delay in DELAYS:
             moved.append(np.zeros_like(load))
-            kept.append((between(np.maximum(t - delay, t[0]), t, torque) - torque) / delay)
+            kept.append(_late(track, part, torque, delay))
     for k in range(len(setup.lacking)):
         moved.append(track.beyond[part, k, :n])
         kept.append(-track.beyond[part, k, n:])

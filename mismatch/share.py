@@ -1,5 +1,7 @@
 """How large a hypothesis is: the share that it explains of what is left on its joints, as it is recorded."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,8 +14,19 @@ from .selection import Directions, eliminate
 Array = NDArray[np.float64]
 
 
-def share_of(weighed: Evidence, model: Directions, test: Scored) -> float:
-    """Return the share of its joints' squared errors in motion that an addition to a model explains.
+@dataclass(frozen=True)
+class Share:
+    """Shares of a joint's squared errors in motion, each beside what the model with the addition leaves.
+
+    explained: what of an addition the model cannot imitate; own: its torque as such.
+    """
+
+    explained: float
+    own: float
+
+
+def share_of(weighed: Evidence, model: Directions, test: Scored) -> Share:
+    """Return how large an addition to a model is on its joints.
 
     Squares count over each regime's noise. weighed: by what it leaves. Ripple is seen in the fast band: its
     share is that of its power in the slow band's noise.
@@ -21,19 +34,22 @@ def share_of(weighed: Evidence, model: Directions, test: Scored) -> float:
     c, space = test.candidate, weighed.setup.space
     if c.effect == "torque_ripple" and c.joint is not None:
         power = float(np.sum(test.size**2)) / 2
-        return power / (power + float(weighed.scales.sigma[c.joint, 0]) ** 2)
-    fitted = eliminate(weighed.sums, model, weighed.found.directions.take(c.columns), None)
-    ix = range(len(c.columns))
-    change, all_of = fitted.reaction @ test.size, weighed.mean + fitted.parameters(ix)
-    moved = left = 0.0
+        part = power / (power + float(weighed.scales.sigma[c.joint, 0]) ** 2)
+        return Share(part, part)
+    addition = weighed.found.directions.take(c.columns)
+    fitted = eliminate(weighed.sums, model, addition, None)
+    changes = np.column_stack([fitted.reaction @ test.size, addition.vectors @ test.size])
+    all_of = weighed.mean + fitted.parameters(range(len(c.columns)))
+    moved, left = np.zeros(2), 0.0
     for run in observed_runs(weighed):
         rows = weighed.runs[run]
         which, errors = regime(rows), residual(rows, space, all_of)
         for j in range(space.dof) if c.joint is None else (c.joint,):
             weight = (which[:, j] < 2) / weighed.noise.sigma[j][which[:, j]] ** 2
-            moved += float(weight @ (rows.columns[j] @ change[space.indices[j]]) ** 2)
+            moved += weight @ (rows.columns[j] @ changes[space.indices[j]]) ** 2
             left += float(weight @ errors[:, j] ** 2)
-    return moved / max(moved + left, 1e-300)
+    explained, own = moved / np.maximum(moved + left, 1e-300)
+    return Share(float(explained), float(own))
 
 
 def nats_from(share: float, rows: float) -> float:

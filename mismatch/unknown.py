@@ -39,7 +39,7 @@ def unknowns(evidence: Evidence, weighed: Evidence, judged: Judged) -> list[Unkn
     for s in scored(weighed, judged.model, some):
         j = s.candidate.joint
         assert j is not None
-        share = share_of(weighed, judged.model, s)
+        share = share_of(weighed, judged.model, s).explained
         mine = (a for a in judged.accepted if a.score.candidate.joint in (None, j))
         if s.evidence < max((shade(a, evidence.setup.space.dof) for a in mine), default=0.0):
             continue

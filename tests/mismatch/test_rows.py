@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from terms_by_hand import torque_by_hand
 
-from residuum.mismatch.columns import WIDTH
+from residuum.mismatch.columns import DELAYS, LATE, WIDTH
 from residuum.mismatch.physics import forces, levers, tilts
-from residuum.mismatch.rows import DELAYS, make_rows
+from residuum.mismatch.rows import make_rows
 from residuum.mismatch.track import calm_speeds
 from residuum.robots import load_robot
 from residuum.symbolic.tilt import tilted
@@ -132,6 +132,26 @@ def test_delay_at_its_own_length_is_exact(arm, along, k) -> None:
     for row in range(3):
         error = rows.torque[inner, row] - arm.column(rows, f"delay{k + 1}", row)[inner]
         assert rms(error) < 0.02 * rms(rows.torque[inner, row])
+
+
+@pytest.mark.parametrize("k", range(len(DELAYS)))
+def test_a_current_that_comes_late_on_one_joint(arm, along, k) -> None:
+    time, delay, joint = instants(500.0), DELAYS[k], 1
+    dry, viscous = arm.setup.friction[joint]
+
+    def friction_at(t):
+        speed = along(t)[1][:, joint]
+        return dry * np.sign(speed) + viscous * speed
+
+    late, there = (arm.observer.inverse_dynamics(*along(t)) for t in (time - delay, time))
+    late[:, joint] += friction_at(time - delay)
+    there[:, joint] += friction_at(time)
+    rows = difference(arm, time, (late - there) / delay)
+    space = arm.setup.space
+    own = next(i for i, c in enumerate(space.own) if c.term == LATE and c.value["around"] == delay)
+    column = rows.columns[joint][:, len(space.seen[joint]) + own]
+    inner = slice(10, None)  # the first samples have nothing before them
+    assert rms((rows.torque[:, joint] - column)[inner]) < 0.05 * rms(rows.torque[inner, joint])
 
 
 def test_a_force_needs_the_torque_of_mujocos_jacobian(arm) -> None:
