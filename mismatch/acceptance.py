@@ -60,8 +60,8 @@ def _objection_to_blows(test: Scored, part: Share) -> str:
     """Return in words why slack is not believed, or nothing.
 
     A blow lasts 20 ms: blocks in which it comes gain or, where it is mistimed, lose more than all the others,
-    so neither gain nor size is steady. Instead its size has to be that of the gap (`implausible`); most blocks
-    gain, or no block shakes it.
+    so neither gain nor size is steady. Its size has to be that of the gap instead (`implausible`), and most
+    blocks gain, or no block shakes it.
     """
     if test.evidence < BLOWS * EVIDENCE or test.total < EVIDENCE:
         return f"evidence {min(test.evidence, test.total):.1f} nats, {BLOWS * EVIDENCE:g} asked"

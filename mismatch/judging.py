@@ -26,6 +26,9 @@ RELATED = 0.2
 SHADOW = 0.1
 #: Of what friction does around zero speed, which is known to less; and told apart from each other by more.
 NEAR_SHADOW, NEAR_CLOSE = 0.3, 0.25
+#: What raises friction around zero speed, and so what builds up there over a short travel: by as much, given
+#: what a peak's grid leaves of it.
+LEVELS, _RISEN = ("stribeck", "coulomb_friction"), 1.5
 #: Unless a jackknife cannot shake its size by 1 %: what a form leaves varies with the motion.
 OWN = 100.0
 #: The rigid body's form is exact: what it leaves is time and gains that are off by a few percent, squared.
@@ -188,6 +191,9 @@ def shadow(test: Scored, accepted: Sequence[Accepted], joints: int) -> str:
         late = first.effect == "time_delay" and first.joint in (None, c.joint)
         if late and (c.effect == "velocity_lag" or is_short(c)):
             return "with a delay friction changes its sign late as well"
+        level = first.effect in LEVELS and first.joint == c.joint and is_short(c)
+        if level and abs(test.size[0]) < _RISEN * abs(a.score.size[0]):
+            return "what friction rose by builds up over the short travel that all of it does"
         both = {first.effect, c.effect} <= set(NEAR_ZERO)
         least = max(shade(a, joints), NEAR_SHADOW * a.score.evidence if both else 0.0)
         if first.effect in MASSES and c.effect == "drive_gain":  # a mass scales with the gains

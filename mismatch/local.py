@@ -28,11 +28,11 @@ MOST, SURE = 0.5, 4.0
 def at_one_place(weighed: Evidence, model: Directions, test: Scored) -> str:
     """Return in words that a joint's hypothesis, as an addition to a model, gains at one place; or nothing.
 
-    weighed: by what it leaves. Left out are ripple, which is seen in the fast band, and what acts around zero
-    speed: joints turn round where their paths do, and nowhere else.
+    weighed: by what it leaves. Left out are ripple, which is seen in the fast band, what acts around zero
+    speed, since joints turn round where their paths do, and slack: a load changes its sign at one angle, too.
     """
     c = test.candidate
-    if c.joint is None or c.effect in ("torque_ripple", *NEAR_ZERO):
+    if c.joint is None or c.effect in ("torque_ripple", "backlash", *NEAR_ZERO):
         return ""
     q, gain, acts = np.concatenate(
         [np.stack([rows.q[:, c.joint], *both]) for rows, *both in gains(weighed, model, test, c.joint)],

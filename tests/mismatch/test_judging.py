@@ -137,6 +137,20 @@ def test_around_zero_speed_names_are_known_to_less() -> None:
     assert shadow(scored([9, 11], evidence=20.0, candidate=drag), first, 6) == ""
 
 
+def test_what_friction_rose_by_builds_up_over_a_short_travel_as_all_of_it_does() -> None:
+    """A Stribeck peak of one Nm more lets one Nm more build up over a milliradian; no second finding."""
+    short, long = (
+        scored([40, 50], evidence=60.0, candidate=Candidate("presliding_hysteresis", 1, (2,), (("zs", zs),)))
+        for zs in (0.001, 0.012)
+    )
+    for first in ("stribeck", "coulomb_friction"):
+        risen = [Accepted(scored([90, 110], candidate=Candidate(first, 1, (0,))), (), (), 0.5)]
+        assert "short travel" in shadow(short, risen, 6)
+        assert "short travel" not in shadow(long, risen, 6)
+    elsewhere = [Accepted(scored([90, 110], candidate=Candidate("stribeck", 0, (0,))), (), (), 0.5)]
+    assert shadow(short, elsewhere, 6) == ""
+
+
 def test_a_gain_is_no_finding_beside_a_mass_that_scales_with_it() -> None:
     load = Accepted(
         scored([90, 110], evidence=6000.0, candidate=Candidate("payload", None, (0,))), (), (), 0.5
@@ -164,6 +178,9 @@ def test_slack_shows_in_blows_and_those_are_rare() -> None:
     assert "evidence" in objection(scored([1.2, 8.0, 12.0], evidence=20.0, candidate=slack), HALF)
     assert "improves" in objection(scored([-1.0, -2.0, -1.0, 90.0], candidate=slack), HALF)
     assert "explains" in objection(scored(gain, candidate=slack), Share(0.001, 0.001))
+    mistimed = [-18.0, -13.1, 94.4, 17.5, -6.7, -1.5, 100.3]
+    assert objection(scored(mistimed, candidate=slack, consistency=5.8), HALF) == ""
+    assert "improves" in objection(scored(mistimed, candidate=slack, consistency=4.0), HALF)
 
 
 @pytest.mark.parametrize(
