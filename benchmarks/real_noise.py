@@ -41,6 +41,8 @@ Array = NDArray[np.float64]
 #: facts of the crude baseline: plain leave-one-run-out on such logs, 16 effects.
 CRUDE = {0.10: (25, 11), 0.20: (62, 12), 0.35: (90, 5), 0.50: (99, 1)}
 
+#: Rounds in which what the recordings lack is taken off: each shows less.
+_ROUNDS = 4
 #: No names for the plain namer: these are free in its baseline.
 FREE = (
     *UNSEEN, "base_free", "payload", "link_inertial", "rotor_inertia", "current_offset", "friction_asymmetry",
@@ -79,6 +81,16 @@ def taken_off(evidence: Evidence, known: Judged) -> tuple[Evidence, Judged]:
     return renewed(evidence, runs), Judged(tuple(stays), model, ())
 
 
+def alone(evidence: Evidence, known: Judged) -> tuple[Evidence, Judged]:
+    """Take off what the recordings lack by themselves, and what only shows once that is gone, and so on."""
+    for _ in range(_ROUNDS):
+        evidence, stays = taken_off(evidence, known)
+        known = everything(evidence, stays)
+        if len(known.accepted) == len(stays.accepted):
+            break
+    return evidence, known
+
+
 def run(
     paths: Sequence[Path], robot: str, repeats: int, seed: int, whole: bool, say: Callable[[str], None]
 ) -> None:
@@ -90,8 +102,7 @@ def run(
     say(
         "known: " + ", ".join(f"{a.score.candidate.effect} {a.score.candidate.joint}" for a in known.accepted)
     )
-    evidence, known = taken_off(evidence, known)
-    known = everything(evidence, known)  # what only shows now that the rest is gone
+    evidence, known = alone(evidence, known)
     theta = parameters(evidence, known.model)
     left = [residual(r, evidence.setup.space, theta) for r in evidence.runs]
     own, reversals = columns_of(recordings, evidence), reversals_of(recordings, evidence)

@@ -21,8 +21,10 @@ from .columns import (
     SHORT,
     SLACK,
     SOFT,
+    STIFFNESSES,
     TERMS,
     WIDTH,
+    WINDUP,
     Column,
     Space,
 )
@@ -34,11 +36,17 @@ from .selection import Directions
 Array = NDArray[np.float64]
 
 
+#: Coefficients of what is there as a whole add up to one, or to this (damping and the arm's other joints take
+#: some of a swing); one of two may be below zero by this share of both.
+WHOLE, BEYOND = (0.4, 1.5), 0.2
+
+
 @dataclass(frozen=True)
 class Candidate:
     """An effect on a joint (0-based; None: on all), as columns (D,) of the candidates' directions.
 
-    values: nonlinear ones; positive: coefficients that physics wants above zero.
+    values: nonlinear ones; positive: coefficients that physics wants above zero; whole: its columns are two
+    neighbouring forms of one effect as it is, so that it is mixed of them.
     """
 
     effect: str
@@ -47,6 +55,14 @@ class Candidate:
     values: tuple[tuple[str, float], ...] = ()
     terms: tuple[str, ...] = ()
     positive: bool = False
+    whole: bool = False
+
+    def conceivable(self, size: Array) -> bool:
+        """Return whether coefficients (k,) are those of physics: of its sign, or of the whole."""
+        if self.whole:
+            total = float(size.sum())
+            return WHOLE[0] < total < WHOLE[1] and bool(size.min() > -BEYOND * total)
+        return not (self.positive and size[0] < 0)
 
     @property
     def key(self) -> tuple[str, int | None]:
@@ -66,6 +82,7 @@ def own_columns(gear: float) -> tuple[Column, ...]:
         found += [Column(term, p, values + width) for values in tried for p in entry.linear_in]
     found += [Column("coulomb", "Fc", (("width", w),)) for w in SOFT]
     found += [Column(SLACK, "gap", (("gap", x),)) for x in GAPS]
+    found += [Column(WINDUP, "torque", (("stiffness", x),)) for x in STIFFNESSES]
     found += [Column(LATE, "d", (("around", x),)) for x in DELAYS]
     found += [Column("ripple", p, (("n", k * gear),)) for k in ORDERS for p in ("A", "B")]
     found.append(Column(REPEAT, "rho"))
@@ -105,13 +122,14 @@ class Candidates:
 
 def candidates(
     space: Space, physics: Physics, own_std: Array, common_std: dict[str, float], base_std: Array,
-    load: Array, changed: bool,
+    load: Array, swings: Array, changed: bool,
 ) -> Candidates:  # fmt: skip
     """Return every hypothesis of the catalogue that is a column or an inertial direction.
 
     own_std (N, K): prior width of each own column; base_std (B,): of a base parameter. load (N, 2): range of
-    what each gear carries, Nm; a load that does not reverse shows no slack. changed: sought is what changed
-    since a reference: friction that came to depend on temperature is the old one at a temperature unknown.
+    what each gear carries, Nm; a load that does not reverse shows no slack. swings (N,): Nm/rad up to which a
+    gear's swing is slow enough to be seen; stiffer ones just lag. changed: sought is what changed since a
+    reference: friction that came to depend on temperature is the old one at a temperature unknown.
     """
     vectors, std, each = list[Array](), list[float](), list[Candidate]()
 
@@ -133,6 +151,12 @@ def candidates(
             for k, (a, b) in enumerate(pairwise(gaps)):
                 ends = ("gap", GAPS[k]), ("wider", GAPS[k + 1])
                 each.append(Candidate("backlash", j, (*a, *b), ends))
+        soft = [groups.pop((WINDUP, (("stiffness", x),)), []) for x in STIFFNESSES]
+        for k, (a, b) in enumerate(pairwise(soft)):
+            if STIFFNESSES[k + 1] > swings[j]:
+                break
+            ends = ("stiffness", STIFFNESSES[k]), ("stiffer", STIFFNESSES[k + 1])
+            each.append(Candidate("joint_elasticity", j, (*a, *b), ends, whole=True))
         for (term, values), columns in groups.items():
             if dict(values).get("zs", SHORT) < SHORT:
                 continue

@@ -13,17 +13,22 @@ from ..recordings import Recording
 from ..robots import Robot
 from ..robots.model import Model
 from .candidates import Candidates, candidates, curve_columns, own_columns
-from .columns import BASELINE, LATE, REPEAT, SLACK, WIDTH, Column, Space, space_of
+from .columns import BASELINE, LATE, REPEAT, SLACK, WIDTH, WINDUP, Column, Space, space_of
 from .flexible import ranges
 from .grams import Fold, Scales, equal_scales, evenly, folds_of, scales_of, whole
 from .lacking import SHARE, dropped_of, frozen_of, widths
-from .physics import physics_of
+from .physics import of_links, physics_of
 from .repeats import repeated, views
 from .rows import Rows, common_names, make_rows
 from .selection import Sums
 from .track import Setup
 
 Array = NDArray[np.float64]
+
+
+#: Hz; a gear is known by its link's swing where that is no faster: rows end at 15 Hz, and errors of speeds
+#: and of the clock grow towards it.
+SWINGS = 12.0
 
 
 @dataclass(frozen=True)
@@ -103,13 +108,14 @@ def gather(
     runs = [make_rows(r, setup) for r in recordings]
     torque = np.sqrt(np.mean(np.concatenate([r.torque for r in runs]) ** 2, axis=0))
     own_std = 0.2 * _own_std(runs, setup.space, torque)
-    own_std[:, [c.term in (SLACK, REPEAT) for c in setup.space.own]] = 1.0  # columns of the whole
+    own_std[:, [c.term in (SLACK, WINDUP, REPEAT) for c in setup.space.own]] = 1.0  # columns of the whole
     common_std = {
         "encoder": 0.05, "elasticity": 1e-3, "tilt": 0.2, "delay": 0.05, "lacking": SHARE,
     }  # fmt: skip
     own_std[:, [c.term == LATE for c in setup.space.own]] = common_std["delay"]
     changed = not all(sides)
-    found = candidates(setup.space, physics, own_std, common_std, base_std, limits.load, changed)
+    swings = of_links(physics, base, q[::50]) * (2 * np.pi * SWINGS) ** 2
+    found = candidates(setup.space, physics, own_std, common_std, base_std, limits.load, swings, changed)
     progress("noise")
     none = equal_scales(physics.dof)
     return renewed(Evidence(setup, (), tuple(sides), none, (), found, base_std, torque, own_std), runs)

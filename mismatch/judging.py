@@ -28,7 +28,9 @@ SHADOW = 0.1
 NEAR_SHADOW, NEAR_CLOSE = 0.3, 0.25
 #: What raises friction around zero speed, and so what builds up there over a short travel: by as much, given
 #: what a peak's grid leaves of it.
-LEVELS, _RISEN = ("stribeck", "coulomb_friction"), 1.5
+LEVELS, _RISEN = ("stribeck", "coulomb_friction"), 2.0
+#: What shakes the whole arm: on another joint it is known to this share.
+SHAKING, _SHAKEN = ("joint_elasticity", "backlash"), 0.3
 #: Unless a jackknife cannot shake its size by 1 %: what a form leaves varies with the motion.
 OWN = 100.0
 #: The rigid body's form is exact: what it leaves is time and gains that are off by a few percent, squared.
@@ -189,11 +191,16 @@ def shadow(test: Scored, accepted: Sequence[Accepted], joints: int) -> str:
     for a in accepted:
         first = a.score.candidate
         late = first.effect == "time_delay" and first.joint in (None, c.joint)
+        if first.effect == c.effect == "time_delay":
+            return "is in what the clock's delay leaves"
         if late and (c.effect == "velocity_lag" or is_short(c)):
             return "with a delay friction changes its sign late as well"
         level = first.effect in LEVELS and first.joint == c.joint and is_short(c)
         if level and abs(test.size[0]) < _RISEN * abs(a.score.size[0]):
             return "what friction rose by builds up over the short travel that all of it does"
+        shaken = first.effect in SHAKING and c.effect in SHAKING and first.joint != c.joint
+        if shaken and test.evidence < _SHAKEN * a.score.evidence:
+            return "is what the other joint's gear shakes the arm with"
         both = {first.effect, c.effect} <= set(NEAR_ZERO)
         least = max(shade(a, joints), NEAR_SHADOW * a.score.evidence if both else 0.0)
         if first.effect in MASSES and c.effect == "drive_gain":  # a mass scales with the gains

@@ -212,7 +212,7 @@ def ranked(evidence: Evidence, model: Directions, skip: Sequence[str] = ()) -> l
     best: dict[tuple[str, int | None], Scored] = {}
     for s in scored(evidence, model, [c for c in evidence.found.each if c.effect not in skip]):
         c = s.candidate
-        if (c.key not in best or s.evidence > best[c.key].evidence) and not (c.positive and s.size[0] < 0):
+        if (c.key not in best or s.evidence > best[c.key].evidence) and c.conceivable(s.size):
             best[c.key] = s
     return sorted(best.values(), key=lambda s: -s.evidence)
 

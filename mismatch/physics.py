@@ -128,6 +128,15 @@ def slopes(physics: Physics, base: Array, q: Array, qd: Array) -> Mapping[str, A
     return found
 
 
+def of_links(physics: Physics, base: Array, q: Array) -> Array:
+    """Return the inertia (N,) about each joint without its rotor, kg m^2, the mean over poses q (T, N)."""
+    columns, found = physics.regressor, np.empty(physics.dof)
+    for j, unit in enumerate(np.eye(physics.dof)):
+        turning = np.broadcast_to(unit, q.shape)
+        found[j] = columns.combined("momentum", base - physics.rotors, q=q, qd=turning)[:, j].mean()
+    return found
+
+
 def tilts(physics: Physics, q: Array) -> Array:
     """Return the torque (T, N, 2), Nm/rad, of a base turned about its x and y axis.
 

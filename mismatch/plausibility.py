@@ -36,7 +36,9 @@ def implausible(evidence: Evidence, test: Scored) -> str:
     c = test.candidate
     if c.effect == "backlash" and not _LEAST_GAP < (times := float(test.size.sum())) < 1 / _LEAST_GAP:
         return f"moves the arm {times:.2g} times as much as such a gap does"
-    if c.effect == "joint_elasticity" and test.size[0] * SOFTEST > 1:
+    if c.whole and not c.conceivable(test.size):
+        return f"moves the arm {test.size[0]:.2g} and {test.size[1]:.2g} times as much as such gears do"
+    if c.effect == "joint_elasticity" and not c.whole and test.size[0] * SOFTEST > 1:
         return f"a stiffness of {1 / test.size[0]:.0f} Nm/rad is no gear's"
     if c.effect == "time_delay" and c.joint is not None and test.size[0] < SYNCHRONOUS:
         return f"{1e3 * test.size[0]:.1f} ms late is as recorders have it"

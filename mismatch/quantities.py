@@ -22,6 +22,9 @@ GAIN_DOUBT = 0.15
 #: Prior width of a payload's mass (kg), first moments (kg m) and inertias (kg m^2).
 PAYLOAD = np.array([10.0, 3.0, 3.0, 3.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
 
+#: What is mixed of two neighbouring values: its name and unit.
+_MIXED = {"backlash": ("gap", "rad"), "joint_elasticity": ("stiffness", "Nm/rad")}
+
 Quantity = Mapping[str, Any]
 
 
@@ -58,10 +61,10 @@ def parameters_of(
     if c.effect in simple:
         name, sign, unit = simple[c.effect]
         return {name: quantity(sign * size[0], std[0], unit)}
-    if c.effect == "backlash":  # two gaps in the proportion that their coefficients have
-        ends, total = np.array([v for _, v in c.values]), float(size.sum())
-        gap = float(size @ ends) / total
-        return {"gap": quantity(gap, float(np.linalg.norm((ends - gap) * std)) / total, "rad")}
+    if c.effect in _MIXED and c.values:  # two values in the proportion that their coefficients have
+        (name, unit), ends, total = _MIXED[c.effect], np.array([v for _, v in c.values]), float(size.sum())
+        value = float(np.clip(size @ ends / total, ends.min(), ends.max()))
+        return {name: quantity(value, float(np.linalg.norm((ends - value) * std)) / total, unit)}
     if c.effect == "joint_elasticity":
         return {"stiffness": quantity(1 / size[0], std[0] / size[0] ** 2, "Nm/rad")}
     if c.effect == "base_tilt":

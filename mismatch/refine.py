@@ -12,10 +12,12 @@ from ..robots import Robot
 from ..robots.model import Covariance, Model, TermData
 from ..symbolic.terms import CATALOGUE
 from ..symbolic.tilt import tilted
-from .columns import BASELINE, DELAYS, LATE
+from .candidates import Candidate
+from .columns import BASELINE, DELAYS, LATE, WINDUP, Space
 from .evidence import Evidence
 from .judging import Accepted
 from .naming import TIGHT
+from .physics import of_links
 from .selection import Directions, normal_equations
 
 Array = NDArray[np.float64]
@@ -211,18 +213,24 @@ def _shared_terms(
         for j in range(space.dof):
             yield "delay", j, {"d": (full[at], std[at])}
     if c.effect == "joint_elasticity" and c.joint is not None:
-        at, inertia = space.common_index(f"elasticity{c.joint + 1}"), _geared_inertia(evidence, c.joint)
-        yield "elasticity", c.joint, {"c": (-inertia * full[at], inertia * std[at])}
+        setup, q = evidence.setup, np.concatenate([r.q for r in evidence.runs if len(r)])[::50]
+        inertia = float(of_links(setup.physics, setup.base, q)[c.joint])
+        soft, spread = _compliance(space, c, c.joint, full, std)
+        yield "elasticity", c.joint, {"c": (-inertia * soft, inertia * spread)}
 
 
-def _geared_inertia(evidence: Evidence, joint: int) -> float:
-    """Mean M_jj (kg m^2) without the rotor over the observed poses: joint j's momentum at its unit speed."""
-    q = np.concatenate([r.q for r in evidence.runs if len(r)])[::50]
-    unit = np.zeros_like(q)
-    unit[:, joint] = 1.0
-    setup = evidence.setup
-    links = setup.base - setup.physics.rotors
-    return float(setup.physics.regressor.combined("momentum", links, q=q, qd=unit)[:, joint].mean())
+def _compliance(
+    space: Space, c: Candidate, joint: int, full: Array, std: Mapping[int, float]
+) -> tuple[float, float]:
+    """Return a soft gear's compliance, rad/Nm, and its standard deviation."""
+    if not c.values:
+        common = space.common_index(f"elasticity{joint + 1}")
+        return float(full[common]), std[common]
+    ends = np.array([v for _, v in c.values])
+    own = [k for k, x in enumerate(space.own) if x.term == WINDUP and x.value["stiffness"] in ends]
+    at = [space.own_index(joint, k) for k in own]
+    parts = full[at] / full[at].sum()
+    return float(parts @ (1 / ends)), float(np.linalg.norm([std[k] for k in at] / ends))
 
 
 def _geometry(model: Model, robot: Robot, accepted: Sequence[Accepted]) -> Model:

@@ -28,8 +28,9 @@ class Share:
 def share_of(weighed: Evidence, model: Directions, test: Scored) -> Share:
     """Return how large an addition to a model is on its joints.
 
-    Squares count over each regime's noise. weighed: by what it leaves. Ripple is seen in the fast band: its
-    share is that of its power in the slow band's noise.
+    Squares count as they are or over each regime's noise, whichever shows more: what acts around reversals is
+    little beside the noise there, and what acts in free motion beside the errors at reversals. weighed: by
+    what it leaves. Ripple is seen in the fast band: its share is that of its power in the slow band's noise.
     """
     c, space = test.candidate, weighed.setup.space
     if c.effect == "torque_ripple" and c.joint is not None:
@@ -40,15 +41,17 @@ def share_of(weighed: Evidence, model: Directions, test: Scored) -> Share:
     fitted = eliminate(weighed.sums, model, addition, None)
     changes = np.column_stack([fitted.reaction @ test.size, addition.vectors @ test.size])
     all_of = weighed.mean + fitted.parameters(range(len(c.columns)))
-    moved, left = np.zeros(2), 0.0
+    moved, left = np.zeros((2, 2)), np.zeros((2, 1))
     for run in observed_runs(weighed):
         rows = weighed.runs[run]
         which, errors = regime(rows), residual(rows, space, all_of)
         for j in range(space.dof) if c.joint is None else (c.joint,):
-            weight = (which[:, j] < 2) / weighed.noise.sigma[j][which[:, j]] ** 2
-            moved += weight @ (rows.columns[j] @ changes[space.indices[j]]) ** 2
-            left += float(weight @ errors[:, j] ** 2)
-    explained, own = moved / np.maximum(moved + left, 1e-300)
+            weights = (which[:, j] < 2) * np.stack(
+                [np.ones(len(rows)), weighed.noise.sigma[j][which[:, j]] ** -2.0]
+            )
+            moved += weights @ (rows.columns[j] @ changes[space.indices[j]]) ** 2
+            left += weights @ errors[:, j : j + 1] ** 2
+    explained, own = (moved / np.maximum(moved + left, 1e-300)).max(axis=0)
     return Share(float(explained), float(own))
 
 

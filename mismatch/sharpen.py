@@ -29,7 +29,8 @@ def sharpened(evidence: Evidence, judged: Judged) -> dict[int, Sharp]:
         c = a.score.candidate
         if not (free := [n for n, _ in c.values if n not in ("width", "n", "around", "jerk")]):
             continue
-        same = [x for x in of_key(evidence.found.each, c.key) if x.terms == c.terms]
+        alike = (x for x in of_key(evidence.found.each, c.key) if x.terms == c.terms)
+        same = [x for x in alike if free[0] in dict(x.values)]
         if len(same) < 3:
             continue
         heights = [s.evidence for s in scored(evidence, without(judged, k), same)]

@@ -16,12 +16,13 @@ from ..identify.rows import GAP, REST, SAMPLES_PER_PERIOD
 from ..recordings import Recording
 from ..robots.model import TermData
 from ..symbolic.terms import CATALOGUE
-from .columns import SLACK, Space
+from .columns import SLACK, WINDUP, Space
 from .flexible import Ranges
 from .lacking import Lacking
 from .physics import Physics, slopes, tilts
 from .slack import within_gap
 from .speed import smooth_speeds
+from .windup import wound
 
 Array = NDArray[np.float64]
 
@@ -216,7 +217,7 @@ def _since(time: Array, qd: Array) -> Array:
 
 def _slopes(time: Array, q: Array, qd: Array, setup: Setup) -> Slopes:
     """Slopes of the links alone; none where no column needs them."""
-    if not (setup.space.common or any(c.term == SLACK for c in setup.space.own)):
+    if not (setup.space.common or any(c.term in (SLACK, WINDUP) for c in setup.space.own)):
         return Slopes(time, {})
     every = max(1, int(1 / _SLOPE_RATE / max(float(np.median(np.diff(time))), 1e-6)))
     pick = np.unique(np.append(np.arange(0, len(time), every), len(time) - 1))
@@ -226,7 +227,7 @@ def _slopes(time: Array, q: Array, qd: Array, setup: Setup) -> Slopes:
 
 def remembers(term: str) -> bool:
     """Return whether a column depends on the samples before."""
-    return term == SLACK or (term in CATALOGUE and bool(CATALOGUE[term].state))
+    return term in (SLACK, WINDUP) or (term in CATALOGUE and bool(CATALOGUE[term].state))
 
 
 def _held(track: Track, setup: Setup) -> Array:
@@ -234,10 +235,15 @@ def _held(track: Track, setup: Setup) -> Array:
     some = [c for c in setup.space.own if remembers(c.term)]
     if not some:
         return track.held
-    slack = _slack(track, [c.value["gap"] for c in some if c.term == SLACK])
+    moved = {
+        SLACK: _slack(track, [c.value["gap"] for c in some if c.term == SLACK]),
+        WINDUP: _wound(track, [c.value["stiffness"] for c in some if c.term == WINDUP]),
+    }
     return np.stack(
         [
-            next(slack) if c.term == SLACK else sampled(track, slice(None), c.term, c.parameter, c.values)
+            next(moved[c.term])
+            if c.term in moved
+            else sampled(track, slice(None), c.term, c.parameter, c.values)
             for c in some
         ],
         axis=2,
@@ -246,17 +252,37 @@ def _held(track: Track, setup: Setup) -> Array:
 
 def _slack(track: Track, gaps: Sequence[float]) -> Iterator[Array]:
     """Give the torque (T, N) that each motor gives more when its gear has slack, gap rad to each side."""
-    time, load, at = track.time, track.calm, track.slopes
+    time, load = track.time, track.calm
     if not gaps:
         return
-    own = (np.ascontiguousarray(np.diagonal(at.values[k], axis1=1, axis2=2)) for k in ("pv", "bq"))
-    inertia, sag = (between(time, at.time, x) for x in own)
+    inertia, sag = _of_links(track)
     for gap in gaps:
         found = np.empty_like(load)
         for j in range(load.shape[1]):
             place, rate = within_gap(time, load[:, j], inertia[:, j], gap)
             found[:, j] = np.gradient(inertia[:, j] * rate, time) - sag[:, j] * place
         yield found
+
+
+def _wound(track: Track, stiffnesses: Sequence[float]) -> Iterator[Array]:
+    """Give the torque (T, N) that each motor gives more when its gear winds up, stiffness in Nm/rad."""
+    if not stiffnesses:
+        return
+    inertia, sag = _of_links(track)
+    smooth = CALM / float(np.median(np.diff(track.time)))
+    turning = gaussian_filter1d(np.gradient(track.qd, track.time, axis=0), smooth, axis=0)
+    pull = track.calm - inertia * turning
+    place, rate = wound(track.time, track.q, track.qd, pull, inertia, np.array(stiffnesses))
+    for k in range(len(stiffnesses)):
+        yield np.gradient(inertia * rate[:, :, k], track.time, axis=0) - sag * place[:, :, k]
+
+
+def _of_links(track: Track) -> tuple[Array, Array]:
+    """Return each link's inertia about its joint (T, N), kg m^2, and its gravity's slope (T, N), Nm/rad."""
+    at = track.slopes
+    own = (np.ascontiguousarray(np.diagonal(at.values[k], axis1=1, axis2=2)) for k in ("pv", "bq"))
+    inertia, sag = (between(track.time, at.time, x) for x in own)
+    return inertia, sag
 
 
 def sampled(

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from residuum.mismatch.candidates import candidates
+from residuum.mismatch.columns import STIFFNESSES
 
 
 @pytest.mark.parametrize("changed", [True, False])
@@ -11,9 +12,24 @@ def test_friction_came_to_depend_on_temperature_from_an_unknown_one_on(arm, chan
     space, n = arm.setup.space, arm.setup.space.dof
     widths = dict.fromkeys(("encoder", "elasticity", "tilt", "delay", "lacking"), 1.0)
     own, base, load = np.ones((n, len(space.own))), np.ones(len(space.base)), np.tile([-1.0, 1.0], (n, 1))
-    found = candidates(space, arm.physics, own, widths, base, load, changed).each
+    found = candidates(space, arm.physics, own, widths, base, load, np.full(n, np.inf), changed).each
     hot = next(c for c in found if c.effect == "temperature_dependent_friction" and c.joint == 1)
     levels = {
         c.columns for c in found if c.effect in ("coulomb_friction", "viscous_friction") and c.joint == 1
     }
     assert all(set(columns) <= set(hot.columns) for columns in levels) == changed
+
+
+def test_a_gear_swings_only_where_rows_are_fast_enough_for_it(arm) -> None:
+    space, n = arm.setup.space, arm.setup.space.dof
+    widths = dict.fromkeys(("encoder", "elasticity", "tilt", "delay", "lacking"), 1.0)
+    own, base, load = np.ones((n, len(space.own))), np.ones(len(space.base)), np.tile([-1.0, 1.0], (n, 1))
+    seen = np.array([0.0, 1e4, np.inf])
+    found = candidates(space, arm.physics, own, widths, base, load, seen, False).each
+    soft = [c for c in found if c.effect == "joint_elasticity"]
+    assert {c.joint for c in soft if not c.values} == {0, 1, 2}  # all of them may lag
+    stiffest = [
+        max((dict(c.values)["stiffer"] for c in soft if c.joint == j and c.values), default=0)
+        for j in range(n)
+    ]
+    assert stiffest[0] == 0 and 5e3 < stiffest[1] <= 1e4 and stiffest[2] == max(STIFFNESSES)

@@ -120,6 +120,8 @@ def test_a_delay_of_one_joint_is_longer_than_recorders_have_it_and_covers_that_j
         assert (implausible(evidence, test) == "") == believed
     delay = [Accepted(scored([9, 11], candidate=one), (), (), 0.5)]
     here, elsewhere = (scored([9, 11], candidate=Candidate("velocity_lag", j, (2,))) for j in (1, 0))
+    clock = [Accepted(scored([9, 11], candidate=Candidate("time_delay", None, (0, 1))), (), (), 0.5)]
+    assert "clock" in shadow(scored([9, 11], candidate=one), clock, 6)
     assert "delay" in shadow(here, delay, 6)
     assert shadow(elsewhere, delay, 6) == ""
 
@@ -223,6 +225,27 @@ def test_no_gear_is_softer_than_a_gear(stiffness, believed) -> None:
     test = Scored(soft, np.ones(4), 50.0, np.array([1 / stiffness]), np.ones(1))
     evidence = SimpleNamespace(setup=SimpleNamespace(friction=np.ones((1, 2))), has_reference=True)
     assert (implausible(evidence, test) == "") == believed
+
+
+@pytest.mark.parametrize(
+    ("parts", "believed"),
+    [((0.4, 0.5), True), ((0.9, -0.1), True), ((0.1, 0.1), False), ((-1.1, 2.2), False), ((1.0, 1.0), False)],
+)
+def test_a_gear_that_swings_does_so_at_its_own_stiffness(parts, believed) -> None:
+    soft = Candidate("joint_elasticity", 0, (0, 1), (("stiffness", 9e3), ("stiffer", 1.2e4)), whole=True)
+    test = Scored(soft, np.ones(4), 50.0, np.array(parts), np.ones(2))
+    evidence = SimpleNamespace(setup=SimpleNamespace(friction=np.ones((1, 2))), has_reference=True)
+    assert (implausible(evidence, test) == "") == believed
+
+
+def test_a_gear_that_swings_shakes_the_other_joints() -> None:
+    soft, other, drag = (
+        Candidate(x, j, (j,)) for j, x in enumerate(("joint_elasticity", "backlash", "viscous_friction"))
+    )
+    first = [Accepted(scored([90, 110], evidence=1000.0, candidate=soft), (), (), 0.5)]
+    assert "shakes" in shadow(scored([9, 11], evidence=200.0, candidate=other), first, 6)
+    assert shadow(scored([9, 11], evidence=400.0, candidate=other), first, 6) == ""
+    assert shadow(scored([9, 11], evidence=200.0, candidate=drag), first, 6) == ""
 
 
 @pytest.mark.parametrize(

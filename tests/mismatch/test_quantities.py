@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from residuum.mismatch.quantities import peak, quantity
+from residuum.mismatch.candidates import Candidate
+from residuum.mismatch.naming import Scored
+from residuum.mismatch.quantities import parameters_of, peak, quantity
 
 
 @pytest.mark.parametrize("true", [0.006, 0.0105, 0.02])
@@ -34,3 +36,14 @@ def test_an_unknown_deviation_is_null(std) -> None:
 
 def test_deviations_keep_three_digits() -> None:
     assert quantity(2.0, 0.0123456, "kg")["std"] == 0.0123
+
+
+def test_a_gear_between_two_stiffnesses_has_one_between_them() -> None:
+    """In the proportion of their coefficients, and never beyond them."""
+    values = ("stiffness", 9e3), ("stiffer", 1.2e4)
+    soft = Candidate("joint_elasticity", 0, (0, 1), values)
+    for parts, expected in (((0.4, 0.4), 1.05e4), ((0.9, -0.1), 9e3)):
+        found = Scored(soft, np.ones(4), 50.0, np.array(parts), np.full(2, 0.01))
+        stiffness = parameters_of(None, None, found, None, None)["stiffness"]
+        assert stiffness["value"] == pytest.approx(expected)
+        assert stiffness["unit"] == "Nm/rad" and stiffness["std"] > 0
