@@ -12,7 +12,7 @@ from .coverage import SLOW
 from .evidence import Evidence
 from .local import at_one_place
 from .naming import Scored, chosen, nuisance, ranked, scored, steadiness, tested
-from .plausibility import NEAR_ZERO, SYNCHRONOUS, implausible, is_short, misshapen, of_all_joints
+from .plausibility import NEAR_ZERO, SYNCHRONOUS, implausible, is_short, misshapen, near_zero, of_all_joints
 from .selection import Directions
 from .share import share_of
 
@@ -179,7 +179,7 @@ def likelier(order: Sequence[Scored]) -> Scored:
 def told_apart(best: Scored, other: Scored) -> bool:
     """Return whether one hypothesis is better than another by more than what recordings like these decide."""
     lead = best.evidence - other.evidence
-    if {best.candidate.effect, other.candidate.effect} <= set(NEAR_ZERO):
+    if near_zero(best.candidate) and near_zero(other.candidate):
         return lead >= max(APART, NEAR_CLOSE * best.evidence)
     unsteady = steadiness(best.gain - other.gain) < STEADY
     return not (lead < APART or (lead < CLOSE * best.evidence and unsteady))
@@ -201,7 +201,7 @@ def shadow(test: Scored, accepted: Sequence[Accepted], joints: int) -> str:
         shaken = first.effect in SHAKING and c.effect in SHAKING and first.joint != c.joint
         if shaken and test.evidence < _SHAKEN * a.score.evidence:
             return "is what the other joint's gear shakes the arm with"
-        both = {first.effect, c.effect} <= set(NEAR_ZERO)
+        both = near_zero(first) and near_zero(c)
         least = max(shade(a, joints), NEAR_SHADOW * a.score.evidence if both else 0.0)
         if first.effect in MASSES and c.effect == "drive_gain":  # a mass scales with the gains
             least = SHADOW / joints * a.score.evidence

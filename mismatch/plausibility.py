@@ -54,6 +54,11 @@ def implausible(evidence: Evidence, test: Scored) -> str:
     return ""
 
 
+def near_zero(c: Candidate) -> bool:
+    """Return whether it is told by what happens around zero speed; of one joint's delay that is most."""
+    return c.effect in NEAR_ZERO or (c.effect == "time_delay" and c.joint is not None)
+
+
 def is_short(c: Candidate) -> bool:
     """Return whether it builds up over less travel than the catalogue's presliding."""
     return dict(c.values).get("zs", _TRAVEL) < _TRAVEL

@@ -19,6 +19,7 @@ from . import signs
 from .columns import DELAYS, LATE, REPEAT, WIDTH, Space
 from .fast import Fast, fast_band
 from .flexible import curves
+from .gears import held
 from .lacking import Lacking
 from .track import Setup, Track, between, remembers, sampled, track_of
 
@@ -65,6 +66,7 @@ class Rows:
 def make_rows(recording: Recording, setup: Setup) -> Rows:
     """Filter a clean recording. There may be no row at all: stretches shorter than the kernel give none."""
     track, kernel, rate = track_of(recording, setup)
+    track = replace(track, held=held(track, setup))
     step = 1 / (4 * kernel.cutoff)
     pieces = list[Rows]()
     for stretch in segments(track.time, GAP / rate):
@@ -92,7 +94,7 @@ def _fast(track: Track, setup: Setup, kernel: Kernel, origin: float) -> Fast | N
 
 def _own(track: Track, part: slice, setup: Setup) -> Array:
     """Own columns of some samples (T, N, K)."""
-    found, held = list[Array](), 0
+    found, place = list[Array](), 0
     cache: dict[tuple[str, tuple[tuple[str, float], ...]], dict[str, Array]] = {}
     direction = signs.sign(track.qd[part], WIDTH)
     for c in setup.space.own:
@@ -105,8 +107,8 @@ def _own(track: Track, part: slice, setup: Setup) -> Array:
         elif c.term == LATE:
             found.append(_late(track, part, _swift_torque(track, part, setup), c.value["around"]))
         elif remembers(c.term):
-            found.append(track.held[part, :, held])
-            held += 1
+            found.append(track.held[part, :, place])
+            place += 1
         else:
             key = c.term, c.values
             if key not in cache:

@@ -1,9 +1,9 @@
 """From a recording to what its columns are made of, sample by sample.
 
-Speeds without noise, the torque that each gear carries, the time since reversals, and terms with memory.
+Speeds without noise, the torque that each gear carries, and the time since reversals.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,9 +20,7 @@ from .columns import SLACK, WINDUP, Space
 from .flexible import Ranges
 from .lacking import Lacking
 from .physics import Physics, slopes, tilts
-from .slack import within_gap
 from .speed import smooth_speeds
-from .windup import wound
 
 Array = NDArray[np.float64]
 
@@ -105,7 +103,7 @@ class Track:
     since: Array
     moving: NDArray[np.bool_]
     beyond: Array  # (T, L, 2 N): momentum and beta that the model lacks by its form
-    held: Array  # (T, N, H): columns that remember, made over the whole recording at once
+    held: Array  # (T, N, H): columns that remember, made over the whole recording at once (gears.py)
     slopes: Slopes
 
 
@@ -127,8 +125,7 @@ def track_of(recording: Recording, setup: Setup) -> tuple[Track, Kernel, float]:
         *_load(time, q, qd, setup, kernel, rate),
         _since(time, qd), moves(q, rate), beyond, np.empty((len(q), n, 0)), _slopes(time, q, qd, setup),
     )  # fmt: skip
-    track = replace(track, measured=track.measured - _known(track, setup))
-    return replace(track, held=_held(track, setup)), kernel, rate
+    return replace(track, measured=track.measured - _known(track, setup)), kernel, rate
 
 
 def calm_speeds(recording: Recording) -> Array:
@@ -228,61 +225,6 @@ def _slopes(time: Array, q: Array, qd: Array, setup: Setup) -> Slopes:
 def remembers(term: str) -> bool:
     """Return whether a column depends on the samples before."""
     return term in (SLACK, WINDUP) or (term in CATALOGUE and bool(CATALOGUE[term].state))
-
-
-def _held(track: Track, setup: Setup) -> Array:
-    """Columns with memory (T, N, H), in the order of the space's own columns."""
-    some = [c for c in setup.space.own if remembers(c.term)]
-    if not some:
-        return track.held
-    moved = {
-        SLACK: _slack(track, [c.value["gap"] for c in some if c.term == SLACK]),
-        WINDUP: _wound(track, [c.value["stiffness"] for c in some if c.term == WINDUP]),
-    }
-    return np.stack(
-        [
-            next(moved[c.term])
-            if c.term in moved
-            else sampled(track, slice(None), c.term, c.parameter, c.values)
-            for c in some
-        ],
-        axis=2,
-    )
-
-
-def _slack(track: Track, gaps: Sequence[float]) -> Iterator[Array]:
-    """Give the torque (T, N) that each motor gives more when its gear has slack, gap rad to each side."""
-    time, load = track.time, track.calm
-    if not gaps:
-        return
-    inertia, sag = _of_links(track)
-    for gap in gaps:
-        found = np.empty_like(load)
-        for j in range(load.shape[1]):
-            place, rate = within_gap(time, load[:, j], inertia[:, j], gap)
-            found[:, j] = np.gradient(inertia[:, j] * rate, time) - sag[:, j] * place
-        yield found
-
-
-def _wound(track: Track, stiffnesses: Sequence[float]) -> Iterator[Array]:
-    """Give the torque (T, N) that each motor gives more when its gear winds up, stiffness in Nm/rad."""
-    if not stiffnesses:
-        return
-    inertia, sag = _of_links(track)
-    smooth = CALM / float(np.median(np.diff(track.time)))
-    turning = gaussian_filter1d(np.gradient(track.qd, track.time, axis=0), smooth, axis=0)
-    pull = track.calm - inertia * turning
-    place, rate = wound(track.time, track.q, track.qd, pull, inertia, np.array(stiffnesses))
-    for k in range(len(stiffnesses)):
-        yield np.gradient(inertia * rate[:, :, k], track.time, axis=0) - sag * place[:, :, k]
-
-
-def _of_links(track: Track) -> tuple[Array, Array]:
-    """Return each link's inertia about its joint (T, N), kg m^2, and its gravity's slope (T, N), Nm/rad."""
-    at = track.slopes
-    own = (np.ascontiguousarray(np.diagonal(at.values[k], axis1=1, axis2=2)) for k in ("pv", "bq"))
-    inertia, sag = (between(track.time, at.time, x) for x in own)
-    return inertia, sag
 
 
 def sampled(

@@ -136,6 +136,8 @@ def test_around_zero_speed_names_are_known_to_less() -> None:
     assert told_apart(best, scored([40.0, 41.0], evidence=80.0, candidate=drag))
     first = [Accepted(best, (), (), 0.5)]
     assert "%" in shadow(scored([9, 11], evidence=20.0, candidate=late), first, 6)
+    delay = Candidate("time_delay", 1, (3,), (("around", 0.01),))
+    assert "%" in shadow(scored([9, 11], evidence=20.0, candidate=delay), first, 6)
     assert shadow(scored([9, 11], evidence=20.0, candidate=drag), first, 6) == ""
 
 
