@@ -22,13 +22,9 @@ from .repeats import repeated, views
 from .rows import Rows, common_names, make_rows
 from .selection import Sums
 from .track import Setup
+from .windup import seen
 
 Array = NDArray[np.float64]
-
-
-#: Hz; a gear is known by its link's swing where that is no faster: rows end at 15 Hz, and errors of speeds
-#: and of the clock grow towards it.
-SWINGS = 12.0
 
 
 @dataclass(frozen=True)
@@ -114,7 +110,7 @@ def gather(
     }  # fmt: skip
     own_std[:, [c.term == LATE for c in setup.space.own]] = common_std["delay"]
     changed = not all(sides)
-    swings = of_links(physics, base, q[::50]) * (2 * np.pi * SWINGS) ** 2
+    swings = seen(of_links(physics, base, q[::50]))
     found = candidates(setup.space, physics, own_std, common_std, base_std, limits.load, swings, changed)
     progress("noise")
     none = equal_scales(physics.dof)

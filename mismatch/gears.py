@@ -9,7 +9,7 @@ from scipy.ndimage import gaussian_filter1d
 from .columns import SLACK, WINDUP
 from .slack import within_gap
 from .track import CALM, Setup, Track, between, remembers, sampled
-from .windup import wound
+from .windup import seen, wound
 
 Array = NDArray[np.float64]
 
@@ -56,9 +56,14 @@ def _wound(track: Track, stiffnesses: Sequence[float]) -> Iterator[Array]:
     smooth = CALM / float(np.median(np.diff(track.time)))
     turning = gaussian_filter1d(np.gradient(track.qd, track.time, axis=0), smooth, axis=0)
     pull = track.calm - inertia * turning
-    place, rate = wound(track.time, track.q, track.qd, pull, inertia, np.array(stiffnesses))
+    heavy = seen(inertia).max(axis=0) > min(stiffnesses)  # other links swing too fast at any
+    q, qd, needs, mass = (x[:, heavy] for x in (track.q, track.qd, pull, inertia))
+    place, rate = wound(track.time, q, qd, needs, mass, np.array(stiffnesses))
     for k in range(len(stiffnesses)):
-        yield np.gradient(inertia * rate[:, :, k], track.time, axis=0) - sag * place[:, :, k]
+        found = np.zeros_like(track.q)
+        found[:, heavy] = np.gradient(mass * rate[:, :, k], track.time, axis=0)
+        found[:, heavy] -= sag[:, heavy] * place[:, :, k]
+        yield found
 
 
 def _of_links(track: Track) -> tuple[Array, Array]:

@@ -11,12 +11,20 @@ from scipy.interpolate import CubicHermiteSpline
 
 Array = NDArray[np.float64]
 
+#: Hz; a gear is known by its link's swing where that is no faster: rows end at 15 Hz, and errors of speeds
+#: and of the clock grow towards it.
+FASTEST = 12.0
 #: Damping ratio of a gear's spring; wider than most, so that neighbouring stiffnesses can be mixed.
 DAMPING = 0.05
 #: s; a step at most, and a pause after which the link is taken to rest on its spring again.
 STEP, PAUSE = 0.0021, 0.1
 #: kg m^2; what a link has at least: a fitted wrist may have none.
 _LEAST = 1e-3
+
+
+def seen(inertia: Array) -> Array:
+    """Return the stiffest gears, Nm/rad, whose swing is slow enough to be seen; inertia: of links, kg m^2."""
+    return np.asarray(inertia * (2 * np.pi * FASTEST) ** 2, np.float64)
 
 
 def wound(
