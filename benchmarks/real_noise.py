@@ -42,7 +42,7 @@ Array = NDArray[np.float64]
 CRUDE = {0.10: (25, 11), 0.20: (62, 12), 0.35: (90, 5), 0.50: (99, 1)}
 
 #: Rounds in which what the recordings lack is taken off: each shows less.
-_ROUNDS = 4
+_ROUNDS = 3
 #: No names for the plain namer: these are free in its baseline.
 FREE = (
     *UNSEEN, "base_free", "payload", "link_inertial", "rotor_inertia", "current_offset", "friction_asymmetry",
