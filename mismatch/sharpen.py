@@ -27,10 +27,10 @@ def sharpened(evidence: Evidence, judged: Judged) -> dict[int, Sharp]:
     found: dict[int, Sharp] = {}
     for k, a in enumerate(judged.accepted):
         c = a.score.candidate
-        if not (free := [n for n, _ in c.values if n not in ("width", "n", "around", "jerk")]):
+        free = [n for n, _ in c.values if n not in ("width", "n", "around", "jerk")]
+        if c.whole or not free:  # a mixture has its value between the two already
             continue
-        alike = (x for x in of_key(evidence.found.each, c.key) if x.terms == c.terms)
-        same = [x for x in alike if free[0] in dict(x.values)]
+        same = [x for x in of_key(evidence.found.each, c.key) if x.terms == c.terms]
         if len(same) < 3:
             continue
         heights = [s.evidence for s in scored(evidence, without(judged, k), same)]
