@@ -25,6 +25,9 @@ PAYLOAD = np.array([10.0, 3.0, 3.0, 3.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0])
 #: What is mixed of two neighbouring values: its name and unit.
 _MIXED = {"backlash": ("gap", "rad"), "joint_elasticity": ("stiffness", "Nm/rad")}
 
+#: Share by which a swing between two stiffnesses misses its own when it is mixed of them (test_windup.py).
+MIXING = 0.04
+
 Quantity = Mapping[str, Any]
 
 
@@ -64,7 +67,10 @@ def parameters_of(
     if c.effect in _MIXED and c.values:  # two values in the proportion that their coefficients have
         (name, unit), ends, total = _MIXED[c.effect], np.array([v for _, v in c.values]), float(size.sum())
         value = float(np.clip(size @ ends / total, ends.min(), ends.max()))
-        return {name: quantity(value, float(np.linalg.norm((ends - value) * std)) / total, unit)}
+        own = MIXING * value if c.whole else 0.0
+        return {
+            name: quantity(value, float(np.hypot(np.linalg.norm((ends - value) * std) / total, own)), unit)
+        }
     if c.effect == "joint_elasticity":
         return {"stiffness": quantity(1 / size[0], std[0] / size[0] ** 2, "Nm/rad")}
     if c.effect == "base_tilt":

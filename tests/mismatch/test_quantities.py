@@ -5,7 +5,7 @@ import pytest
 
 from residuum.mismatch.candidates import Candidate
 from residuum.mismatch.naming import Scored
-from residuum.mismatch.quantities import parameters_of, peak, quantity
+from residuum.mismatch.quantities import MIXING, parameters_of, peak, quantity
 
 
 @pytest.mark.parametrize("true", [0.006, 0.0105, 0.02])
@@ -41,9 +41,9 @@ def test_deviations_keep_three_digits() -> None:
 def test_a_gear_between_two_stiffnesses_has_one_between_them() -> None:
     """In the proportion of their coefficients, and never beyond them."""
     values = ("stiffness", 9e3), ("stiffer", 1.2e4)
-    soft = Candidate("joint_elasticity", 0, (0, 1), values)
+    soft = Candidate("joint_elasticity", 0, (0, 1), values, whole=True)
     for parts, expected in (((0.4, 0.4), 1.05e4), ((0.9, -0.1), 9e3)):
         found = Scored(soft, np.ones(4), 50.0, np.array(parts), np.full(2, 0.01))
         stiffness = parameters_of(None, None, found, None, None)["stiffness"]
         assert stiffness["value"] == pytest.approx(expected)
-        assert stiffness["unit"] == "Nm/rad" and stiffness["std"] > 0
+        assert stiffness["unit"] == "Nm/rad" and stiffness["std"] >= MIXING * expected

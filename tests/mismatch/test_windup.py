@@ -1,14 +1,25 @@
 """The link behind a soft gear, against MuJoCo's and against the exact answer."""
 
+from itertools import pairwise
+
 import mujoco
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter1d
 
+from residuum.mismatch.candidates import WHOLE
+from residuum.mismatch.columns import STIFFNESSES
 from residuum.mismatch.explain import Task, explain
+from residuum.mismatch.quantities import MIXING
 from residuum.mismatch.windup import DAMPING, wound
 from residuum.robots import load_robot
 from residuum.virtual import Plant, effects, simulate
 from residuum.virtual.motions import fourier, pick_and_place
+
+
+def rms(x) -> float:
+    return float(np.sqrt(np.mean(np.square(x))))
+
 
 INERTIA, STIFFNESS = 3.0, np.array([2e3, 1e4, 3e4])
 
@@ -69,6 +80,23 @@ def test_after_a_pause_in_the_recording_the_link_is_at_rest_again() -> None:
     first = int(np.flatnonzero(time > 1.4)[0])
     assert abs(place[first - 1, 0, 0]) > 1e-4
     assert place[first, 0, 0] == 0.0
+
+
+@pytest.mark.parametrize("part", [0.25, 0.5, 0.75])
+def test_a_stiffness_between_two_is_mixed_of_them(part) -> None:
+    """On average over the grid it is missed by as much as a finding says that it may be."""
+    time, angle, speed = swept(500.0)
+    flat, errors = np.zeros((len(time), 1)), []
+    for soft, stiff in pairwise(STIFFNESSES[:8]):
+        between = soft * (stiff / soft) ** part
+        _, rate = wound(
+            time, column(angle), column(speed), flat, flat + INERTIA, np.array([soft, stiff, between])
+        )
+        torque = gaussian_filter1d(np.gradient(INERTIA * rate[:, 0], time, axis=0), 6, axis=0)
+        size = np.linalg.lstsq(torque[:, :2], torque[:, 2], rcond=None)[0]
+        assert WHOLE[0] < size.sum() < WHOLE[1]
+        errors.append(size @ [soft, stiff] / size.sum() / between - 1)
+    assert rms(errors) < MIXING
 
 
 @pytest.mark.slow
