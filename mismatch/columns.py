@@ -62,6 +62,8 @@ LATE = "late"
 DELAYS = (0.004, 0.01, 0.02)
 #: The column of what the reference's model left where the reference did the same; no term either.
 REPEAT = "repeat"
+#: Columns that only a finding frees: what every model holds anyway does not include them.
+BY_NAME = (WINDUP, LATE)
 #: Columns that describe and are no physics.
 NO_PHYSICS = ("curve", REPEAT)
 

@@ -13,7 +13,7 @@ from ..recordings import Recording
 from ..robots import Robot
 from ..robots.model import Model
 from .candidates import Candidates, candidates, curve_columns, own_columns
-from .columns import BASELINE, LATE, REPEAT, SLACK, WIDTH, WINDUP, Column, Space, space_of
+from .columns import BASELINE, BY_NAME, LATE, REPEAT, SLACK, WIDTH, WINDUP, Column, Space, space_of
 from .flexible import ranges
 from .grams import Fold, Scales, equal_scales, evenly, folds_of, scales_of, whole
 from .lacking import SHARE, dropped_of, frozen_of, widths
@@ -25,6 +25,10 @@ from .track import Setup
 from .windup import seen
 
 Array = NDArray[np.float64]
+
+
+#: Prior width of a column that a model is to be without.
+_NONE = 1e-12
 
 
 @dataclass(frozen=True)
@@ -121,8 +125,9 @@ def renewed(evidence: Evidence, runs: Sequence[Rows]) -> Evidence:
     """Return the evidence of other rows of the same recordings: their noise and folds anew."""
     space, sides = evidence.setup.space, evidence.observed
     healthy = [r for r, o in zip(runs, sides, strict=True) if not o] or runs
-    std = np.concatenate([evidence.base_std, evidence.own_std.ravel(), widths(space.common, 1e-12)])
-    # noise is what the richest model leaves
+    # noise is what the richest model leaves, without what only a finding frees
+    own = np.where([c.term in BY_NAME for c in space.own], _NONE, evidence.own_std)
+    std = np.concatenate([evidence.base_std, own.ravel(), widths(space.common, _NONE)])
     theta, scales = _fitted(healthy, space, evidence.setup.physics.published, std)
     if evidence.has_reference:
         runs = _repeating(evidence.setup, runs, sides, theta)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from .candidates import Candidate
-from .columns import BASELINE, REPEAT, Column, Space
+from .columns import BASELINE, BY_NAME, REPEAT, Column, Space
 from .evidence import Evidence, residual, weighed
 from .grams import Scales, evenly, scales_of
 from .lacking import widths
@@ -33,6 +33,10 @@ SHORTEST = 3e-4
 #: Of a column's prior width, for columns that only describe the reference's own imperfections.
 SHARES = (0.003, 0.01, 0.03, 0.1)
 BARE = 1e-4
+
+
+#: Nats of a swing: drives and stick-slip swing as well, at some frequency; below it a soft gear may only lag.
+CLEAR = 30.0
 
 
 @dataclass(frozen=True)
@@ -125,11 +129,11 @@ def _rich(evidence: Evidence) -> Directions:
     space = evidence.setup.space
     # what heat does is the reference's own only where the reference shows it; else it explains anything
     terms = ["heat" if c.parameter == "temperature" else c.term for c in space.own]
-    heated = {"heat", "temperature_dependent"}
+    shown = {"heat", "temperature_dependent", *BY_NAME}
     free = {*BASELINE, REPEAT}
 
     def model(share: float, wide: set[str]) -> Directions:
-        width = np.array([1.0 if t in wide else BARE if t in heated else share for t in terms])
+        width = np.array([1.0 if t in wide else BARE if t in shown else share for t in terms])
         common = widths(space.common, 1e-3)
         std = np.concatenate([evidence.base_std, (width * evidence.own_std).ravel(), common])
         return Directions(sparse.eye(space.size, format="csc"), std, np.ones(space.size, bool))
@@ -139,7 +143,7 @@ def _rich(evidence: Evidence) -> Directions:
 
     share = max(SHARES, key=lambda s: worth(s, free))
     best = worth(share, free)
-    for term in dict.fromkeys(t for t in terms if t not in free and t != "gain"):
+    for term in dict.fromkeys(t for t in terms if t not in free and t not in ("gain", *BY_NAME)):
         if (found := worth(share, free | {term})) > best:
             best, free = found, free | {term}
     return model(share, free)
@@ -212,7 +216,8 @@ def ranked(evidence: Evidence, model: Directions, skip: Sequence[str] = ()) -> l
     best: dict[tuple[str, int | None], Scored] = {}
     for s in scored(evidence, model, [c for c in evidence.found.each if c.effect not in skip]):
         c = s.candidate
-        if (c.key not in best or s.evidence > best[c.key].evidence) and c.conceivable(s.size):
+        clear = s.evidence >= CLEAR if c.whole else True
+        if (c.key not in best or s.evidence > best[c.key].evidence) and c.conceivable(s.size) and clear:
             best[c.key] = s
     return sorted(best.values(), key=lambda s: -s.evidence)
 
