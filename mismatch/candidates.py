@@ -38,7 +38,7 @@ Array = NDArray[np.float64]
 
 #: Coefficients of what is there as a whole add up to one, or to this (damping and the arm's other joints take
 #: some of a swing); one of two may be below zero by this share of both.
-WHOLE, BEYOND = (0.6, 1.5), 0.2
+WHOLE, BEYOND = (0.6, 1.3), 0.2
 
 
 @dataclass(frozen=True)

@@ -55,7 +55,7 @@ SLACK = "slack"
 GAPS = (0.00025, 0.0005, 0.001, 0.002, 0.004, 0.008, 0.016)
 #: The column of a soft gear's own motion, no term either; its stiffness (Nm/rad), neighbours mix.
 WINDUP = "windup"
-STIFFNESSES = tuple(float(f"{x:.3g}") for x in np.geomspace(2e3, 4e4, 13))
+STIFFNESSES = tuple(float(f"{x:.3g}") for x in np.geomspace(3e3, 4e4, 12))
 #: The column of a current that comes late on its joint alone, no term either; s, near which its coefficient
 #: is the delay.
 LATE = "late"

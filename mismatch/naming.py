@@ -36,7 +36,7 @@ BARE = 1e-4
 
 
 #: Nats of a swing: drives and stick-slip swing as well, at some frequency; below it a soft gear may only lag.
-CLEAR = 30.0
+CLEAR = 100.0
 
 
 @dataclass(frozen=True)
