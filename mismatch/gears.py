@@ -57,6 +57,9 @@ def _wound(track: Track, stiffnesses: Sequence[float]) -> Iterator[Array]:
     turning = gaussian_filter1d(np.gradient(track.qd, track.time, axis=0), smooth, axis=0)
     pull = track.calm - inertia * turning
     heavy = seen(inertia).max(axis=0) > min(stiffnesses)  # other links swing too fast at any
+    if not heavy.any():
+        yield from np.zeros((len(stiffnesses), *track.q.shape))
+        return
     q, qd, needs, mass = (x[:, heavy] for x in (track.q, track.qd, pull, inertia))
     place, rate = wound(track.time, q, qd, needs, mass, np.array(stiffnesses))
     for k in range(len(stiffnesses)):

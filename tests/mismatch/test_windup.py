@@ -1,5 +1,6 @@
 """The link behind a soft gear, against MuJoCo's and against the exact answer."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import mujoco
@@ -8,9 +9,10 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from residuum.mismatch.candidates import WHOLE
-from residuum.mismatch.columns import STIFFNESSES
+from residuum.mismatch.columns import STIFFNESSES, WINDUP
 from residuum.mismatch.explain import Task, explain
 from residuum.mismatch.quantities import MIXING
+from residuum.mismatch.rows import make_rows
 from residuum.mismatch.windup import DAMPING, wound
 from residuum.robots import load_robot
 from residuum.virtual import Plant, effects, simulate
@@ -97,6 +99,18 @@ def test_a_stiffness_between_two_is_mixed_of_them(part) -> None:
         assert WHOLE[0] < size.sum() < WHOLE[1]
         errors.append(size @ [soft, stiff] / size.sum() / between - 1)
     assert rms(errors) < MIXING
+
+
+@pytest.mark.parametrize("rate", [125.0, 500.0])
+@pytest.mark.parametrize("part", [0.01, 1.0], ids=["light", "as it is"])
+def test_an_arm_too_light_to_swing_has_no_swing(arm, along, rate, part) -> None:
+    """A folded UR3e's links all swing too fast to be seen."""
+    time = np.arange(0.0, 4.0, 1 / rate)
+    setup = replace(arm.setup, base=arm.physics.rotors + part * (arm.physics.published - arm.physics.rotors))
+    rows = make_rows(arm.recording(time, arm.observer.inverse_dynamics(*along(time))), setup)
+    own = [k for k, c in enumerate(setup.space.own) if c.term == WINDUP]
+    swings = [rows.columns[j][:, len(setup.space.seen[j]) + own[0]].any() for j in range(3)]
+    assert any(swings) == (part == 1.0)
 
 
 @pytest.mark.slow
