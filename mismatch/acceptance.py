@@ -21,6 +21,8 @@ UNSHAKEN, BENT = 8.0, 0.3
 SIZED = 3.0
 #: Or it is a blow, which is rare: so many times the evidence.
 BLOWS = 3.0
+#: Or so loud that some mistimed blows do not matter.
+LOUD = 30.0
 #: A named effect explains at least this share of what its joint's model leaves (0.07 of its rms): less is of
 #: no use to anyone.
 SHARE = 0.005
@@ -61,12 +63,13 @@ def _objection_to_blows(test: Scored, part: Share) -> str:
 
     A blow lasts 20 ms: blocks in which it comes gain or, where it is mistimed, lose more than all the others,
     so neither gain nor size is steady. Its size has to be that of the gap instead (`implausible`), and most
-    blocks gain, or no block shakes it.
+    blocks gain, or no block shakes it, or it is loud.
     """
     if test.evidence < BLOWS * EVIDENCE or test.total < EVIDENCE:
         return f"evidence {min(test.evidence, test.total):.1f} nats, {BLOWS * EVIDENCE:g} asked"
     sure = test.total >= BLOWS * EVIDENCE and test.consistency >= SURE
-    if test.improved < IMPROVED and not sure:
+    loud = test.total >= LOUD * EVIDENCE and test.consistency >= SIZED
+    if test.improved < IMPROVED and not (sure or loud):
         return f"improves only {100 * test.improved:.0f} % of the left-out parts"
     return _too_small(part) if part.explained < SHARE else ""
 

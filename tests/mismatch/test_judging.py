@@ -185,6 +185,9 @@ def test_slack_shows_in_blows_and_those_are_rare() -> None:
     mistimed = [-18.0, -13.1, 94.4, 17.5, -6.7, -1.5, 100.3]
     assert objection(scored(mistimed, candidate=slack, consistency=5.8), HALF) == ""
     assert "improves" in objection(scored(mistimed, candidate=slack, consistency=4.0), HALF)
+    loud = [5 * x for x in mistimed]
+    assert objection(scored(loud, evidence=900.0, candidate=slack, consistency=4.0), HALF) == ""
+    assert "improves" in objection(scored(loud, evidence=900.0, candidate=slack, consistency=2.0), HALF)
 
 
 @pytest.mark.parametrize(
