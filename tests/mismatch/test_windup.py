@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
 
+from residuum.codegen.generate import generate
+from residuum.codegen.load import load_text
 from residuum.mismatch.candidates import WHOLE
 from residuum.mismatch.columns import STIFFNESSES, WINDUP
 from residuum.mismatch.explain import Task, explain
@@ -127,3 +129,5 @@ def test_explain_names_a_soft_gear_that_swings_and_the_model_is_generated(tmp_pa
     assert [f["joints"] for f in found] == [[2]]
     assert found[0]["parameters"]["stiffness"]["value"] == pytest.approx(1e4, rel=0.15)
     assert ("elasticity", 2) in [(t.name, t.joint) for t in answer.model.term]
+    observer = load_text(generate(answer.model).files["observer.py"])
+    assert observer.DOF == 6
