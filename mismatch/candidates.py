@@ -111,6 +111,10 @@ _BESIDE = {"spring": ("offset",), "temperature_dependent": ("coulomb", "viscous"
 _POSITIVE = ("presliding", "lag", "load_dependent", "stribeck", "spring", LATE)
 
 
+#: A joint's columns by term and nonlinear values.
+Groups = dict[tuple[str, tuple[tuple[str, float], ...]], list[int]]
+
+
 @dataclass(frozen=True)
 class Candidates:
     """All hypotheses and the directions that their columns number."""
@@ -141,22 +145,20 @@ def candidates(
     unit = np.eye(space.size)
     fitted = set() if changed else set(BASELINE)  # what is free anyway
     for j in range(space.dof):
-        groups: dict[tuple[str, tuple[tuple[str, float], ...]], list[int]] = {}
+        groups: Groups = {}
         for k, c in enumerate(space.own):
             if c.term not in NO_PHYSICS and not c.soft:
                 at = add(unit[space.own_index(j, k)], own_std[j, k])
                 groups.setdefault((c.term, c.values), []).append(at)
-        gaps = [groups.pop((SLACK, (("gap", x),)), []) for x in GAPS]
+        gaps = _neighbours(groups, SLACK, ("gap", "wider"), GAPS)
         if load[j, 0] < 0 < load[j, 1]:
-            for k, (a, b) in enumerate(pairwise(gaps)):
-                ends = ("gap", GAPS[k]), ("wider", GAPS[k + 1])
-                each.append(Candidate("backlash", j, (*a, *b), ends))
-        soft = [groups.pop((WINDUP, (("stiffness", x),)), []) for x in STIFFNESSES]
-        for k, (a, b) in enumerate(pairwise(soft)):
-            if STIFFNESSES[k + 1] > swings[j]:
-                break
-            ends = ("stiffness", STIFFNESSES[k]), ("stiffer", STIFFNESSES[k + 1])
-            each.append(Candidate("joint_elasticity", j, (*a, *b), ends, whole=True))
+            each += [Candidate("backlash", j, both, ends) for both, ends in gaps]
+        soft = _neighbours(groups, WINDUP, ("stiffness", "stiffer"), STIFFNESSES)
+        each += [
+            Candidate("joint_elasticity", j, both, ends, whole=True)
+            for both, ends in soft
+            if ends[1][1] <= swings[j]
+        ]
         for (term, values), columns in groups.items():
             if dict(values).get("zs", SHORT) < SHORT:
                 continue
@@ -190,6 +192,15 @@ def candidates(
         sparse.csc_matrix(np.stack(vectors, axis=1)), np.array(std), np.zeros(len(std), bool)
     )
     return Candidates(directions, tuple(each), tuple(curve))
+
+
+def _neighbours(
+    groups: Groups, term: str, names: tuple[str, str], values: Sequence[float]
+) -> list[tuple[tuple[int, ...], tuple[tuple[str, float], ...]]]:
+    """Take a term out of the groups; return each two neighbours' columns, and their values by name."""
+    columns = [groups.pop((term, ((names[0], x),)), []) for x in values]
+    ends = [tuple(zip(names, both, strict=True)) for both in pairwise(values)]
+    return [((*a, *b), named) for (a, b), named in zip(pairwise(columns), ends, strict=True)]
 
 
 def _inertial(

@@ -216,7 +216,7 @@ def ranked(evidence: Evidence, model: Directions, skip: Sequence[str] = ()) -> l
     best: dict[tuple[str, int | None], Scored] = {}
     for s in scored(evidence, model, [c for c in evidence.found.each if c.effect not in skip]):
         c = s.candidate
-        clear = s.evidence >= CLEAR if c.whole else True
+        clear = not c.whole or s.evidence >= CLEAR
         if (c.key not in best or s.evidence > best[c.key].evidence) and c.conceivable(s.size) and clear:
             best[c.key] = s
     return sorted(best.values(), key=lambda s: -s.evidence)

@@ -97,15 +97,17 @@ def _own(track: Track, part: slice, setup: Setup) -> Array:
     found, place = list[Array](), 0
     cache: dict[tuple[str, tuple[tuple[str, float], ...]], dict[str, Array]] = {}
     direction = signs.sign(track.qd[part], WIDTH)
+    drive = _torque(track, part, setup)
+    swift = drive - track.motor[part] + track.swift[part]
     for c in setup.space.own:
         if c.term == "gain":
-            found.append(-_torque(track, part, setup))
+            found.append(-drive)
         elif c.term == "curve":
             continue
         elif c.term == REPEAT:
             found.append(np.zeros_like(direction))  # of what other recordings leave: evidence.py
         elif c.term == LATE:
-            found.append(_late(track, part, _swift_torque(track, part, setup), c.value["around"]))
+            found.append(_late(track, part, swift, c.value["around"]))
         elif remembers(c.term):
             found.append(track.held[part, :, place])
             place += 1
@@ -120,7 +122,7 @@ def _own(track: Track, part: slice, setup: Setup) -> Array:
     if setup.limits is not None:
         found += curves(
             track.q[part], track.qd[part], track.load[part], track.temperature[part], track.since[part],
-            direction, signs.sign(_torque(track, part, setup), DRIVE), setup.limits,
+            direction, signs.sign(drive, DRIVE), setup.limits,
         )  # fmt: skip
     return np.stack(found, axis=2)
 
@@ -130,11 +132,6 @@ def _torque(track: Track, part: slice, setup: Setup) -> Array:
     qd = track.qd[part]
     dry = setup.friction[:, 0] * signs.sign(qd, WIDTH)
     return np.asarray(track.motor[part] + dry + setup.friction[:, 1] * qd, np.float64)
-
-
-def _swift_torque(track: Track, part: slice, setup: Setup) -> Array:
-    """Drive torque (T, N) without its noise."""
-    return np.asarray(_torque(track, part, setup) - track.motor[part] + track.swift[part], np.float64)
 
 
 def _late(track: Track, part: slice, torque: Array, delay: float) -> Array:

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline
 
+from .track import between
+
 Array = NDArray[np.float64]
 
 #: Hz; a gear is known by its link's swing where that is no faster: rows end at 15 Hz, and errors of speeds
@@ -39,11 +41,8 @@ def wound(
     steps = max(1, int(np.ceil(float(np.median(np.diff(time))) / STEP)))
     parts = np.diff(time)[:, None] * np.arange(steps) / steps
     grid = np.append((time[:-1, None] + parts).ravel(), time[-1])
-    angle = CubicHermiteSpline(time, q, qd)(grid) if steps > 1 else q
-    speed, load, mass = (
-        np.stack([np.interp(grid, time, column) for column in x.T], axis=1) if steps > 1 else x
-        for x in (qd, pull, np.maximum(inertia, _LEAST))
-    )
+    angle = CubicHermiteSpline(time, q, qd)(grid)
+    speed, load, mass = (between(grid, time, x) for x in (qd, pull, np.maximum(inertia, _LEAST)))
     damping = 2 * DAMPING * np.sqrt(stiffness * mass.mean(axis=0)[:, None])
     place, rate = (np.empty((len(time), q.shape[1], len(stiffness))) for _ in range(2))
     width = np.diff(grid)

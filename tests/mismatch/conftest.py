@@ -11,6 +11,7 @@ from residuum.codegen.generate import generate
 from residuum.codegen.load import load_text
 from residuum.mismatch.candidates import own_columns
 from residuum.mismatch.columns import space_of
+from residuum.mismatch.evidence import Evidence, gather
 from residuum.mismatch.physics import Physics, physics_of
 from residuum.mismatch.rows import common_names
 from residuum.mismatch.track import Setup
@@ -82,6 +83,16 @@ def arm() -> Arm:
 @pytest.fixture(scope="session")
 def along():
     return motion
+
+
+@pytest.fixture(scope="session")
+def healthy(arm, along) -> Evidence:
+    """60 s of the published arm with Coulomb and viscous friction, and noise."""
+    time, rng = np.arange(0.0, 60.0, 0.008), np.random.default_rng(5)
+    q, qd, qdd = along(time)
+    friction = np.array([5.0, 6.0, 4.0]) * np.tanh(qd / 1e-3) + 2.0 * qd
+    torque = arm.observer.inverse_dynamics(q, qd, qdd) + friction + 0.3 * rng.standard_normal(q.shape)
+    return gather([arm.recording(time, torque)], [True], arm.model, arm.robot)
 
 
 #: Changed robots: what differs from the one that the reference recordings are of.

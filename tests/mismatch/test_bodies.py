@@ -8,7 +8,7 @@ import pytest
 from residuum.identify.physical import unlike_a_body
 from residuum.mismatch import naming
 from residuum.mismatch.bodies import bodiless
-from residuum.mismatch.evidence import Evidence, gather, renewed
+from residuum.mismatch.evidence import renewed
 from residuum.mismatch.judging import judge
 
 BALL = np.array([2.0, 0.1, 0.0, 0.2, 0.03, 0.04, 0.02, 0.0, -0.01, 0.0])  # kg, kg m, kg m^2
@@ -28,16 +28,6 @@ def test_what_is_not_there_cannot_be_taken_away() -> None:
         0.5 * 1e4 * 1.0, rel=0.01
     )
     assert unlike_a_body(-0.1 * BALL, SURE, np.eye(10), np.zeros(10), 10.0) > 1.0
-
-
-@pytest.fixture(scope="module")
-def healthy(arm, along) -> Evidence:
-    """60 s of the published arm with Coulomb and viscous friction, and noise."""
-    time, rng = np.arange(0.0, 60.0, 0.008), np.random.default_rng(6)
-    q, qd, qdd = along(time)
-    friction = np.array([5.0, 6.0, 4.0]) * np.tanh(qd / 1e-3) + 2.0 * qd
-    torque = arm.observer.inverse_dynamics(q, qd, qdd) + friction + 0.3 * rng.standard_normal(q.shape)
-    return gather([arm.recording(time, torque)], [True], arm.model, arm.robot)
 
 
 GROWN = np.array([15.0, 6.0, 0.0, 0.3, 1.0, 4.0, 4.0, 0.0, 0.0, 0.0])

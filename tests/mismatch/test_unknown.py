@@ -2,23 +2,10 @@
 
 from dataclasses import replace
 
-import numpy as np
-import pytest
-
-from residuum.mismatch.evidence import Evidence, gather, renewed
+from residuum.mismatch.evidence import Evidence, renewed
 from residuum.mismatch.judging import judge
 from residuum.mismatch.naming import reweighed
 from residuum.mismatch.unknown import unknowns
-
-
-@pytest.fixture(scope="module")
-def healthy(arm, along) -> Evidence:
-    """60 s of the published arm with Coulomb and viscous friction, and noise."""
-    time, rng = np.arange(0.0, 60.0, 0.008), np.random.default_rng(5)
-    q, qd, qdd = along(time)
-    friction = np.array([5.0, 6.0, 4.0]) * np.tanh(qd / 1e-3) + 2.0 * qd
-    torque = arm.observer.inverse_dynamics(q, qd, qdd) + friction + 0.3 * rng.standard_normal(q.shape)
-    return gather([arm.recording(time, torque)], [True], arm.model, arm.robot)
 
 
 def told(evidence: Evidence):

@@ -20,11 +20,6 @@ from residuum.robots import load_robot
 from residuum.virtual import Plant, effects, simulate
 from residuum.virtual.motions import fourier, pick_and_place
 
-
-def rms(x) -> float:
-    return float(np.sqrt(np.mean(np.square(x))))
-
-
 INERTIA, STIFFNESS = 3.0, np.array([2e3, 1e4, 3e4])
 
 
@@ -100,7 +95,7 @@ def test_a_stiffness_between_two_is_mixed_of_them(part) -> None:
         size = np.linalg.lstsq(torque[:, :2], torque[:, 2], rcond=None)[0]
         assert WHOLE[0] < size.sum() < WHOLE[1]
         errors.append(size @ [soft, stiff] / size.sum() / between - 1)
-    assert rms(errors) < MIXING
+    assert np.sqrt(np.mean(np.square(errors))) < MIXING
 
 
 @pytest.mark.parametrize("rate", [125.0, 500.0])
