@@ -21,7 +21,7 @@ from residuum.mismatch.candidates import Candidate
 from residuum.mismatch.evidence import Evidence, gather
 from residuum.mismatch.judging import judge
 from residuum.mismatch.naming import chosen, nuisance, reweighed, scored
-from residuum.mismatch.proof import joint_moves, rms_where
+from residuum.mismatch.proof import motion, rms_where
 from residuum.mismatch.refit import left_out
 from residuum.mismatch.selection import Directions
 from residuum.recordings import read
@@ -64,7 +64,7 @@ def with_truth(evidence: Evidence, effects: list[dict[str, Any]]) -> Directions 
 
 def errors(evidence: Evidence, model: Directions) -> Array:
     """Return the rms (N,) Nm of left-out rows in which the joint moves."""
-    return rms_where(left_out(evidence, model).residual, joint_moves(evidence))
+    return rms_where(left_out(evidence, model).residual, motion(evidence))
 
 
 def run(trial: Path, least: float) -> None:

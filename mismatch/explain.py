@@ -19,6 +19,7 @@ from .carried import Carried, carried, unloaded
 from .coverage import cannot_show
 from .episodes import episodes
 from .evidence import Evidence, evenly_weighed, gather, residual
+from .handed import handed, shapes_of, unnamed
 from .judging import Judged, judge
 from .lacking import full_of
 from .limits import with_thresholds
@@ -26,9 +27,9 @@ from .naming import reweighed
 from .next_motion import next_motion
 from .parts import Parts
 from .placebo import placebo_rate
-from .proof import joint_moves, prove, rms_where
+from .proof import motion, prove, rms_where
 from .pushes import Pushed, pushed, released, with_pushes
-from .refine import plain, refined, unnamed
+from .refine import refined
 from .refit import LeftOut, left_out, observed_runs, parameters
 from .refusal import bad_data
 from .regions import regions
@@ -133,19 +134,26 @@ def _explained(
     sharp = sharpened(weighed, judged)
     progress("proof on left-out blocks")
     kept = [a for a in judged.accepted if a.is_finding or not evidence.has_reference]
-    whole = plain(weighed, kept)[0]
-    bare = unnamed(weighed, kept)
-    proof, before, after = _proved(t, weighed, bare, whole)
-    lighter = rms_where(left_out(weighed, bare).residual, joint_moves(weighed)) if t.load else None
+    shapes = shapes_of(evidence, kept)
+    whole = handed(evidence, kept, shapes)
+    bare = whole if evidence.has_reference else unnamed(evidence, kept)
+    # what is handed over has no freedom of its own around zero speed: its errors there are its noise
+    fair = reweighed(evenly_weighed(evidence), whole, even=True)
+    proof, before, after = _proved(t, fair, bare, whole)
+    moving = motion(fair)
+    lighter = None
+    if t.load:
+        lighter = rms_where(left_out(fair, bare, fair.has_reference).residual, moving)
     gear = float(task.robot.joint[0].gear)
     places = regions(runs, names, before.residual, gear)
     progress("placebos")
     rate = placebo_rate(weighed, judged)
     progress("refined model")
-    model = refined(weighed, nominal, task.robot, judged.accepted, {k: s.value for k, s in sharp.items()})
+    values = {k: s.value for k, s in sharp.items()}
+    model = refined(fair, nominal, task.robot, judged.accepted, shapes, values)
     if task.thresholds:
         progress("thresholds")
-        fitted = rms_where(_left(weighed, whole, weighed), joint_moves(weighed))
+        fitted = rms_where(_left(fair, whole, fair), moving)
         inflate = np.maximum(1.0, proof.after / np.maximum(fitted, 1e-12))
         pushes = t.push.contact.pushes if t.push else ()
         touched = [e.span for e in (*found, *pushes)] + list(t.load.intervals if t.load else ())
@@ -159,18 +167,19 @@ def _explained(
 
 
 def _proved(
-    t: _Told, weighed: Evidence, baseline: Directions, whole: Directions
+    t: _Told, fair: Evidence, baseline: Directions, whole: Directions
 ) -> tuple[Proof, LeftOut, LeftOut]:
     """Prove on the rows without pushes; what both models leave is of all rows."""
-    first = weighed
+    first = fair
     if t.load:
         # a load that comes and goes is slow: it would hide what is as slow from the fit without it
         loaded = evenly_weighed(released(t.recorded, t.push) if t.push else t.recorded)
         first = reweighed(loaded, baseline, even=True)
-    proof, before, after = prove(weighed, baseline, whole, first)
+    proof, before, after = prove(fair, baseline, whole, first)
     if t.push is None:
         return proof, before, after
-    early, late = _left(first, baseline, t.recorded), _left(weighed, whole, t.every)
+    early = _left(first, baseline, t.recorded, fair.has_reference)
+    late = _left(fair, whole, t.every)
     return (
         proof,
         replace(before, residual=with_pushes(before.residual, early, t.push)),
@@ -178,9 +187,9 @@ def _proved(
     )
 
 
-def _left(fitted: Evidence, model: Directions, of: Evidence) -> Sequence[Array]:
+def _left(fitted: Evidence, model: Directions, of: Evidence, healthy: bool = False) -> Sequence[Array]:
     """Return what a model that is fitted to some rows leaves of each observed run of others (n, N), Nm."""
-    own = parameters(fitted, model)
+    own = parameters(fitted, model, healthy=healthy)
     return [residual(of.runs[r], of.setup.space, own) for r in observed_runs(of)]
 
 

@@ -103,6 +103,17 @@ def _alike(which: Indices, inflation: float) -> Array:
     return found
 
 
+def even_weights(rows: Rows, scales: Scales) -> Array:
+    """Return the weight (n, N) of rows in motion, 1 in free motion: near zero speed by its noise, at rest 0.
+
+    Errors at reversals are many times those of free motion, and few: squares alike are ruled by them.
+    """
+    which = regime(rows)
+    free = scales.sigma[:, FREE]
+    joints = np.arange(which.shape[1])
+    return np.where(which == REST, 0.0, (free / scales.sigma[joints, which]) ** 2)
+
+
 def folds_of(
     runs: Sequence[Rows], observed: Sequence[bool], scales: Scales, space: Space,
     observed_scales: Scales | None = None, sides: Sequence[bool] = (True, False),

@@ -49,8 +49,8 @@ _FIRST = {
     "temperature_dependent_friction": ("coulomb_friction", "viscous_friction"),
     "nonlinear_viscous": ("viscous_friction",),
 }
-#: Findings and failed attempts at most.
-MOST, TRIES = 6, 10
+#: Findings and attempts at most.
+MOST, TRIES = 12, 24
 #: Without a reference: fitted anyway, or only a matter of which masses are believed.
 UNSEEN = ("coulomb_friction", "viscous_friction", "drive_gain")
 #: What recordings slower than coverage.SLOW cannot show.
@@ -106,7 +106,7 @@ def judge(
     accepted, refused = list[Accepted](), list[tuple[Scored, str]]()
     barred, hollow, bent = set[Key](), set[Key](), list[int]()
     tries = 0
-    while len(accepted) < most and tries < TRIES:
+    while sum(a.is_finding for a in accepted) < most and tries < TRIES:
         progress(f"hypotheses, round {len(accepted) + 1}")
         fitted = evidence.found.directions.take(bent) + model
         every = ranked(evidence, fitted, skip)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .evidence import Evidence
-from .grams import blocks, regime
+from .grams import blocks, even_weights, regime
 from .refit import LeftOut, left_out, observed_runs
 from .result import Proof
 from .selection import Directions
@@ -25,13 +25,15 @@ def prove(
 ) -> tuple[Proof, LeftOut, LeftOut]:
     """Compare two models on rows that neither has seen; also return what both leave there.
 
-    recorded: the rows for the first model, with what was found and taken off `evidence`.
+    With a reference the first one is what the second makes of the healthy robot.
+    evidence: weighed by what the second model leaves. recorded: the rows for the first model, with what was
+    found and taken off `evidence`.
     """
     curves = [c for joint in evidence.found.curve for c in joint]
     flexible = after + evidence.found.directions.take(curves)
-    first = left_out(recorded, before)
+    first = left_out(recorded, before, evidence.has_reference)
     last, best = (left_out(evidence, m) for m in (after, flexible))
-    moving = joint_moves(evidence)
+    moving = motion(evidence)
     rms_first, rms_last, rms_best = (rms_where(x.residual, moving) for x in (first, last, best))
     ceiling = np.minimum(rms_best, rms_last)
     explained, possible = rms_first**2 - rms_last**2, rms_first**2 - ceiling**2
@@ -47,7 +49,7 @@ def prove(
 def _scheme(evidence: Evidence) -> str:
     count = len(blocks(evidence.runs, evidence.observed, True))
     side = "of the observed recordings, reference kept" if evidence.has_reference else "of the recordings"
-    what = "rms of each joint's low-passed torque error where it moves"
+    what = "rms of each joint's low-passed torque error in motion, around zero speed by its noise there"
     return f"{count} blocks {side} left out one at a time; {what}"
 
 
@@ -62,20 +64,30 @@ def joint_moves(evidence: Evidence) -> Flags:
     return np.where(found.any(axis=0), found, arm[:, None])
 
 
-def rms_where(errors: Sequence[Array], moving: Flags) -> Array:
-    """Return the rms (N,) of errors (n, N) of some runs over the rows that count for each joint."""
-    squares = np.where(moving, np.concatenate(errors) ** 2, 0.0)
-    return np.asarray(np.sqrt(squares.sum(axis=0) / np.maximum(moving.sum(axis=0), 1)), np.float64)
+def motion(evidence: Evidence) -> Array:
+    """Return the weights (n, N) of the observed rows in which joints move: 1, around zero speed by noise.
+
+    Of a joint that never moves freely, those in which the arm moves.
+    """
+    runs = [evidence.runs[r] for r in observed_runs(evidence)]
+    found = np.concatenate([even_weights(r, evidence.noise) for r in runs])
+    return np.where((found == 1).any(axis=0), found, joint_moves(evidence))
 
 
-def _interval(left: LeftOut, moving: Flags) -> Array:
+def rms_where(errors: Sequence[Array], weights: Array | Flags) -> Array:
+    """Return the rms (N,) of errors (n, N) of some runs, each joint's rows as they weigh."""
+    squares = weights * np.concatenate(errors) ** 2
+    return np.asarray(np.sqrt(squares.sum(axis=0) / np.maximum(weights.sum(axis=0), 1e-12)), np.float64)
+
+
+def _interval(left: LeftOut, moving: Array) -> Array:
     """95 % interval (N, 2) of the rms by drawing whole folds with replacement (Kuensch 1989)."""
-    squares, folds = np.where(moving, np.concatenate(left.residual) ** 2, 0.0), np.concatenate(left.fold)
+    squares, folds = moving * np.concatenate(left.residual) ** 2, np.concatenate(left.fold)
     numbers = np.unique(folds)
     by_fold = np.array([squares[folds == k].sum(axis=0) for k in numbers])
     counts = np.array([moving[folds == k].sum(axis=0) for k in numbers])
     drawn = np.random.default_rng(_SEED).integers(0, len(numbers), (_DRAWS, len(numbers)))
-    rms = np.sqrt(by_fold[drawn].sum(axis=1) / np.maximum(counts[drawn].sum(axis=1), 1))
+    rms = np.sqrt(by_fold[drawn].sum(axis=1) / np.maximum(counts[drawn].sum(axis=1), 1e-12))
     return np.asarray(np.percentile(rms, [2.5, 97.5], axis=0).T, np.float64)
 
 

@@ -1,11 +1,11 @@
 """The refined model: published or referenced rigid body, Coulomb and viscous friction, and what was found."""
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
 
 from ..identify.physical import project
 from ..robots import Robot
@@ -15,8 +15,8 @@ from ..symbolic.tilt import tilted
 from .candidates import Candidate
 from .columns import BASELINE, DELAYS, LATE, WINDUP, Space
 from .evidence import Evidence
+from .handed import handed, moved
 from .judging import Accepted
-from .naming import TIGHT
 from .physics import of_links
 from .selection import Directions, normal_equations
 
@@ -29,15 +29,17 @@ _DIGITS = 10
 
 def refined(
     evidence: Evidence, nominal: Model, robot: Robot, accepted: Sequence[Accepted],
-    values: Mapping[int, Mapping[str, float]],
+    shapes: Sequence[Candidate], values: Mapping[int, Mapping[str, float]],
 ) -> Model:  # fmt: skip
     """Return the model of the observed robot with everything that was found in it.
 
-    values: by position in `accepted`, nonlinear values that replace those of the grid.
+    shapes: of the healthy robot's friction. values: by position in `accepted`, nonlinear values that replace
+    those of the grid.
     """
     evidence, space = _in_full(evidence), evidence.setup.space
     held = [a for a in accepted if a.score.candidate.effect != "dropped_coupling"]
-    directions, used = plain(evidence, held)
+    directions = handed(evidence, held, shapes)
+    used = moved(evidence, directions)
     theta, spread = _fit(evidence, directions, used)
     full = np.zeros(space.size)
     full[used] = theta
@@ -52,9 +54,14 @@ def refined(
         for k, n in enumerate(space.base)
     }
     terms = _terms(
-        evidence, accepted, values, full, {int(u): float(np.sqrt(spread[k, k])) for k, u in enumerate(used)}
+        evidence,
+        accepted,
+        shapes,
+        values,
+        full,
+        {int(u): float(np.sqrt(spread[k, k])) for k, u in enumerate(used)},
     )
-    names = [*space.base, *(_name(evidence, int(u)) for u in used[len(space.base) :])]
+    names = _distinct([*space.base, *(_name(evidence, int(u)) for u in used[len(space.base) :])])
     rows = tuple(" ".join(f"{x:.8g}" for x in row[: k + 1]) for k, row in enumerate(spread))
     changed = nominal.model_copy(
         update={
@@ -73,48 +80,6 @@ def _in_full(evidence: Evidence) -> Evidence:
 
 def _short(value: float) -> float:
     return float(f"{value:.{_DIGITS}g}")
-
-
-def unnamed(evidence: Evidence, accepted: Sequence[Accepted]) -> Directions:
-    """Columns of the same model without its findings.
-
-    Where one of these acts as masses do, masses stay as published: over many rows they would take its place.
-    """
-    massive = any(a.score.candidate.effect in _AS_MASSES for a in accepted if a.is_finding)
-    rest = () if massive else [a for a in accepted if not a.is_finding]
-    return plain(evidence, rest, _HELD if massive else TIGHT)[0]
-
-
-def plain(
-    evidence: Evidence, accepted: Sequence[Accepted], tight: float = TIGHT
-) -> tuple[Directions, NDArray[np.int64]]:
-    """Columns of the model that is handed over, and which of the space's parameters they move.
-
-    tight: of their wide prior, what base parameters have where no finding frees them.
-    """
-    space, found = evidence.setup.space, evidence.found
-    free = evidence.has_reference or any(a.score.candidate.effect in _INERTIAL for a in accepted)
-    keep = list(range(len(space.base)))
-    std = list(evidence.base_std * (1.0 if free else tight))
-    for j in range(space.dof):
-        for k, c in enumerate(space.own):
-            if c.usual:
-                keep.append(space.own_index(j, k))
-                std.append(float(evidence.own_std[j, k]))
-    vectors = sparse.eye(space.size, format="csc")[:, keep]
-    plain = Directions(vectors, np.array(std), np.ones(len(keep), bool))
-    inertial = () if evidence.has_reference else _INERTIAL  # there the base parameters themselves are free
-    named = [
-        c for a in accepted if a.score.candidate.effect not in inertial for c in a.score.candidate.columns
-    ]
-    extra = found.directions.take(named)
-    moved = np.unique(extra.vectors.nonzero()[0]) if named else np.empty(0, np.int64)
-    return plain + extra, np.array([*keep, *(m for m in moved if m not in set(keep))], np.int64)
-
-
-_INERTIAL = ("payload", "link_inertial", "rotor_inertia", "base_free")
-_AS_MASSES = (*_INERTIAL, "base_tilt", "encoder_offset", "frozen_joint_coupling", "dropped_coupling")
-_HELD = 1e-4
 
 
 def _fit(evidence: Evidence, directions: Directions, used: NDArray[np.int64]) -> tuple[Array, Array]:
@@ -141,6 +106,16 @@ def _column(evidence: Evidence, index: int) -> tuple[str, str] | None:
     return c.term, c.parameter
 
 
+def _distinct(names: Sequence[str]) -> list[str]:
+    """Return names, numbered where they come back: a term has one entry for each of its nonlinear values."""
+    seen = Counter[str]()
+    found = []
+    for n in names:
+        seen[n] += 1
+        found.append(n if seen[n] == 1 else f"{n}_{seen[n]}")
+    return found
+
+
 def _name(evidence: Evidence, index: int) -> str:
     space = evidence.setup.space
     b, k = len(space.base), len(space.own)
@@ -151,21 +126,22 @@ def _name(evidence: Evidence, index: int) -> str:
 
 
 def _terms(
-    evidence: Evidence, accepted: Sequence[Accepted], values: Mapping[int, Mapping[str, float]], full: Array,
-    std: Mapping[int, float],
+    evidence: Evidence, accepted: Sequence[Accepted], shapes: Sequence[Candidate],
+    values: Mapping[int, Mapping[str, float]], full: Array, std: Mapping[int, float],
 ) -> tuple[TermData, ...]:  # fmt: skip
     space = evidence.setup.space
-    found: dict[tuple[str, int], TermData] = {}
+    found = dict[object, TermData]()
 
     def add(
-        term: str, joint: int, fixed: Mapping[str, float], linear: Mapping[str, tuple[float, float]]
-    ) -> None:
+        term: str, joint: int, fixed: Mapping[str, float], linear: Mapping[str, tuple[float, float]],
+        form: object = (),
+    ) -> None:  # fmt: skip
         entry = CATALOGUE[term]
         numbers = {n: p.default for n, p in entry.parameters.items() if p.default is not None} | dict(fixed)
         if "width" in entry.parameters:
             numbers["width"] = _WIDTH
         numbers |= {n: _short(v) for n, (v, _) in linear.items()}
-        found[term, joint] = TermData(
+        found[term, joint, form] = TermData(
             name=term, joint=joint + 1, parameters=numbers, source="explain",
             std={n: _short(s) for n, (_, s) in linear.items()},
         )  # fmt: skip
@@ -175,20 +151,22 @@ def _terms(
             at = space.own_index(j, k)
             if column.usual:
                 add(column.term, j, {}, {column.parameter: (full[at], std[at])})
-    for position, a in enumerate(accepted):
-        c = a.score.candidate
-        if c.joint is not None and c.terms and c.terms[0] in CATALOGUE and c.terms[0] not in BASELINE:
-            mine = {
-                x.parameter: space.own_index(c.joint, k)
-                for k, x in enumerate(space.own)
-                if x.term == c.terms[0] and x.values == c.values
-            }
-            linear = {n: (full[i], std[i]) for n, i in mine.items()}
-            fixed = {n: v for n, v in c.values if n != "width"} | dict(values.get(position, {}))
-            add(c.terms[0], c.joint, fixed, linear)
-            if c.effect == "cable_spring":
-                at = next(space.own_index(c.joint, k) for k, x in enumerate(space.own) if x.term == "offset")
-                add("offset", c.joint, {}, {"c": (full[at], std[at])})
+    for position, c in enumerate((*(a.score.candidate for a in accepted), *shapes)):
+        if c.joint is None or not c.terms or c.terms[0] not in CATALOGUE or c.terms[0] in BASELINE:
+            continue
+        if (c.terms[0], c.joint, c.values) in found:  # a shape of which more was found
+            continue
+        mine = {
+            x.parameter: space.own_index(c.joint, k)
+            for k, x in enumerate(space.own)
+            if x.term == c.terms[0] and x.values == c.values
+        }
+        fixed = {n: v for n, v in c.values if n != "width"} | dict(values.get(position, {}))
+        add(c.terms[0], c.joint, fixed, {n: (full[i], std[i]) for n, i in mine.items()}, c.values)
+        if c.effect == "cable_spring":
+            at = next(space.own_index(c.joint, k) for k, x in enumerate(space.own) if x.term == "offset")
+            add("offset", c.joint, {}, {"c": (full[at], std[at])})
+    for a in accepted:
         for term, joint, linear in _shared_terms(evidence, a, full, std):
             add(term, joint, {}, linear)
     return tuple(sorted((*evidence.setup.known, *found.values()), key=lambda t: t.joint))

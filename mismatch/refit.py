@@ -4,10 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import cho_solve
 
 from .evidence import Evidence, residual
 from .grams import blocks
-from .selection import Directions, eliminate
+from .selection import Directions, fit
 
 Array = NDArray[np.float64]
 
@@ -20,14 +21,20 @@ class LeftOut:
     fold: tuple[NDArray[np.int64], ...]
 
 
-def parameters(evidence: Evidence, model: Directions, left_out: int | None = None) -> Array:
-    """Return the parameters (P,) on the observed side of a model fitted to all folds, or without one."""
-    none = evidence.found.directions.take([])
-    return np.asarray(evidence.mean + eliminate(evidence.sums, model, none, left_out).own, np.float64)
+def parameters(
+    evidence: Evidence, model: Directions, left_out: int | None = None, healthy: bool = False
+) -> Array:
+    """Return the parameters (P,) on the observed side of a model fitted to all folds, or without one.
+
+    healthy: those that reference and observed recordings share, as if nothing had changed.
+    """
+    fitted = fit(evidence.sums, model, evidence.sums.without(left_out))
+    size = cho_solve(fitted.factor, fitted.right) * (model.shared if healthy else 1.0)
+    return np.asarray(evidence.mean + model.vectors @ size, np.float64)
 
 
-def left_out(evidence: Evidence, model: Directions) -> LeftOut:
-    """Return what a model leaves of every observed row that it has not seen."""
+def left_out(evidence: Evidence, model: Directions, healthy: bool = False) -> LeftOut:
+    """Return what a model leaves of every observed row that it has not seen; healthy: as in `parameters`."""
     parts, number = blocks(evidence.runs, evidence.observed, True), 0
     residuals, folds = [], []
     for run in observed_runs(evidence):
@@ -35,7 +42,7 @@ def left_out(evidence: Evidence, model: Directions) -> LeftOut:
         found, which = np.zeros(rows.torque.shape), np.zeros(len(rows), np.int64)
         theirs = [p for r, p in parts if r == run]
         for part in theirs:
-            own = parameters(evidence, model, number)
+            own = parameters(evidence, model, number, healthy)
             found[part] = residual(rows, evidence.setup.space, own, part)
             which[part] = number
             number += 1

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .evidence import Evidence, residual
-from .grams import regime
+from .grams import even_weights, regime
 from .naming import Scored
 from .refit import observed_runs
 from .selection import Directions, eliminate
@@ -28,7 +28,7 @@ class Share:
 def share_of(weighed: Evidence, model: Directions, test: Scored) -> Share:
     """Return how large an addition to a model is on its joints.
 
-    Squares count as they are or over each regime's noise, whichever shows more: what acts around reversals is
+    Squares count as they are or by each regime's noise, whichever shows more: what acts around reversals is
     little beside the noise there, and what acts in free motion beside the errors at reversals. weighed: by
     what it leaves. Ripple is seen in the fast band: its share is that of its power in the slow band's noise.
     """
@@ -44,11 +44,9 @@ def share_of(weighed: Evidence, model: Directions, test: Scored) -> Share:
     moved, left = np.zeros((2, 2)), np.zeros((2, 1))
     for run in observed_runs(weighed):
         rows = weighed.runs[run]
-        which, errors = regime(rows), residual(rows, space, all_of)
+        evenly, errors = even_weights(rows, weighed.noise), residual(rows, space, all_of)
         for j in range(space.dof) if c.joint is None else (c.joint,):
-            weights = (which[:, j] < 2) * np.stack(
-                [np.ones(len(rows)), weighed.noise.sigma[j][which[:, j]] ** -2.0]
-            )
+            weights = np.stack([evenly[:, j] > 0, evenly[:, j]])
             moved += weights @ (rows.columns[j] @ changes[space.indices[j]]) ** 2
             left += weights @ errors[:, j : j + 1] ** 2
     explained, own = (moved / np.maximum(moved + left, 1e-300)).max(axis=0)
