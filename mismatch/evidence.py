@@ -18,6 +18,7 @@ from .flexible import ranges
 from .grams import Fold, Scales, equal_scales, evenly, folds_of, scales_of, whole
 from .lacking import SHARE, dropped_of, frozen_of, widths
 from .physics import of_links, physics_of
+from .pool import each
 from .repeats import repeated, views
 from .rows import Rows, common_names, make_rows
 from .selection import Sums
@@ -91,7 +92,7 @@ def gather(
     space = space_of(physics.regressor, plain_own, ())
     plain = Setup(physics, space, gains, physics.published, still, known=known)
     progress("first fit")
-    first = [make_rows(r, plain) for r in recordings]
+    first = each(lambda r: make_rows(r, plain), recordings)
     sides = list(observed)
     healthy = [r for r, o in zip(first, sides, strict=True) if not o] or first
     base, friction = _plain_fit(healthy, plain.space, physics.published, base_std)
@@ -105,7 +106,7 @@ def gather(
         gains, base, friction, limits, known, lacking,
     )  # fmt: skip
     progress("columns of every hypothesis")
-    runs = [make_rows(r, setup) for r in recordings]
+    runs = each(lambda r: make_rows(r, setup), recordings)
     torque = np.sqrt(np.mean(np.concatenate([r.torque for r in runs]) ** 2, axis=0))
     own_std = 0.2 * _own_std(runs, setup.space, torque)
     own_std[:, [c.term in (SLACK, WINDUP, REPEAT) for c in setup.space.own]] = 1.0  # columns of the whole

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]
 
 from ..errors import InputError
 from ..recordings import Recording, read
@@ -27,6 +28,7 @@ from .naming import reweighed
 from .next_motion import next_motion
 from .parts import Parts
 from .placebo import placebo_rate
+from .pool import each
 from .proof import motion, prove, rms_where
 from .pushes import Pushed, pushed, released, with_pushes
 from .refine import refined
@@ -65,8 +67,14 @@ def explain(task: Task, progress: Progress = lambda _: None) -> Explanation:
 
     Raises InputError for files that cannot be read or that hold fewer joints than asked.
     """
+    with threadpool_limits(1):  # matrices are small: recordings and blocks run side by side instead
+        return _answered(task, progress)
+
+
+def _answered(task: Task, progress: Progress) -> Explanation:
     progress("reading and auditing")
-    taken = [_read(p, r) for r, some in ((False, task.recordings), (True, task.reference)) for p in some]
+    given = [(p, r) for r, some in ((False, task.recordings), (True, task.reference)) for p in some]
+    taken = each(lambda x: _read(*x), given)
     _distinct(taken)
     sources = tuple(_source(rec, report, ref) for rec, report, ref in taken)
     nominal, simplified = _nominal(task, taken)

@@ -15,6 +15,7 @@ from scipy.ndimage import binary_dilation
 
 from .columns import Space
 from .fast import gram, noise
+from .pool import each
 from .rows import Rows
 from .segments import stretches
 from .whitening import FREE, REST, ZERO, correlation_of, root
@@ -122,20 +123,34 @@ def folds_of(
 
     observed_scales: of the observed runs, when they are not those of all. sides: which are wanted.
     """
-    found, fast = [], _fast_columns(space)
-    for side in sides:
-        used = (observed_scales or scales) if side else scales
-        whiten = {r: roots(runs[r], used) for r, _ in blocks(runs, observed, side)}
-        for r, part in blocks(runs, observed, side):
-            rows = runs[r]
-            span = float(rows.time[part.start]), float(rows.time[part.stop - 1])
-            grams = tuple(_gram(rows, j, whiten[r][j][part]) for j in range(space.dof))
-            if rows.fast is not None:
-                for j in range(space.dof):
-                    ix = np.append(fast + len(space.seen[j]), len(space.indices[j]))
-                    grams[j][np.ix_(ix, ix)] += gram(rows.fast, j, span, used.fast[j])
-            found.append(Fold(grams, side, r, span))
-    return found
+    return [
+        fold
+        for side in sides
+        for fold in _side(
+            runs, blocks(runs, observed, side), (observed_scales or scales) if side else scales, space, side
+        )
+    ]
+
+
+def _side(
+    runs: Sequence[Rows], parts: Sequence[tuple[int, slice]], scales: Scales, space: Space, side: bool
+) -> list[Fold]:
+    fast = _fast_columns(space)
+    which = list(dict.fromkeys(r for r, _ in parts))
+    whiten = dict(zip(which, each(lambda r: roots(runs[r], scales), which), strict=True))
+
+    def fold(of: tuple[int, slice]) -> Fold:
+        r, part = of
+        rows = runs[r]
+        span = float(rows.time[part.start]), float(rows.time[part.stop - 1])
+        grams = tuple(_gram(rows, j, whiten[r][j][part]) for j in range(space.dof))
+        if rows.fast is not None:
+            for j in range(space.dof):
+                ix = np.append(fast + len(space.seen[j]), len(space.indices[j]))
+                grams[j][np.ix_(ix, ix)] += gram(rows.fast, j, span, scales.fast[j])
+        return Fold(grams, side, r, span)
+
+    return each(fold, parts)
 
 
 def blocks(runs: Sequence[Rows], observed: Sequence[bool], side: bool) -> list[tuple[int, slice]]:

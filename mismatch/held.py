@@ -10,6 +10,7 @@ from scipy.linalg import cho_solve
 
 from .evidence import Evidence, residual
 from .grams import roots
+from .pool import each
 from .rows import Rows
 from .segments import Mask, stretches
 from .selection import Directions, Eliminated, fit
@@ -76,14 +77,19 @@ def fitted(
     """Fit the arm and the load, held in some rows, at once: the arm is eliminated from the load."""
     space, sums = evidence.setup.space, evidence.sums
     alone = fit(sums, arm, sums.total)
-    cross, own, right = np.zeros((space.size, len(TEN))), np.zeros((len(TEN),) * 2), np.zeros(len(TEN))
-    for x, h in zip(runs, held, strict=True):
-        target = residual(x.rows, space, evidence.mean)
+    sizes = (space.size, len(TEN)), (len(TEN), len(TEN)), (len(TEN),)
+
+    def sums_of(run: tuple[LoadedRun, Mask]) -> tuple[Array, Array, Array]:
+        x, h = run
+        target, (cross, own, right) = residual(x.rows, space, evidence.mean), map(np.zeros, sizes)
         for j, whiten in enumerate(roots(x.rows, evidence.noise)):
             load = whiten @ (x.columns[:, j] * h[:, None])
             cross[space.indices[j]] += x.rows.columns[j].T @ (whiten.T @ load)
             own += load.T @ load
             right += load.T @ (whiten @ target[:, j])
+        return cross, own, right
+
+    cross, own, right = map(sum, zip(*each(sums_of, zip(runs, held, strict=True)), strict=True))
     b = arm.vectors.T @ cross
     solved = cho_solve(alone.factor, np.column_stack([b, alone.right]))
     answer = arm.vectors @ solved

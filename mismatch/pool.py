@@ -1,0 +1,15 @@
+"""Work on recordings and blocks side by side: each is by itself, and NumPy lets other threads run."""
+
+import os
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
+from typing import TypeVar
+
+A = TypeVar("A")
+B = TypeVar("B")
+
+
+def each(function: Callable[[A], B], items: Iterable[A]) -> list[B]:
+    """Return function of each item, in their order. Threads of BLAS are not counted: limit them outside."""
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(function, items))
