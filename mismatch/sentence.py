@@ -6,6 +6,9 @@ from typing import Any
 from .quantities import Quantity
 from .report.wording import joints_text, title
 
+#: Findings that are told with their numbers; weaker ones are told by name and joints.
+_IN_FULL = 4
+
 
 def sentence(verdict: str, findings: Sequence[Mapping[str, Any]], reference: bool = False) -> str:
     """Return the answer in a sentence; reference: it says what has changed since reference recordings."""
@@ -19,8 +22,12 @@ def sentence(verdict: str, findings: Sequence[Mapping[str, Any]], reference: boo
     unknown = sorted({j for f in findings if f["effect"] == "unknown" for j in f["joints"]})
     parts = [
         f"{title(f['effect'])}{_held(f)} on {joints_text(f['joints'])}{_numbers(f['parameters'])}"
-        for f in named
+        for f in named[:_IN_FULL]
     ]
+    rest = dict[str, set[int]]()
+    for f in named[_IN_FULL:]:
+        rest.setdefault(f["effect"], set()).update(f["joints"])
+    parts += [f"{title(effect)} on {joints_text(sorted(joints))}" for effect, joints in rest.items()]
     if unknown:
         parts.append(f"{title('unknown')} on {joints_text(unknown)}")
     return "Missing from the model: " + "; and ".join(parts) + "."
