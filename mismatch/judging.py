@@ -12,6 +12,7 @@ from .coverage import SLOW
 from .evidence import Evidence
 from .local import at_one_place
 from .naming import Scored, chosen, nuisance, ranked, scored, steadiness, tested
+from .pace import paceless
 from .plausibility import NEAR_ZERO, SYNCHRONOUS, implausible, is_short, misshapen, near_zero, of_all_joints
 from .selection import Directions
 from .share import share_of
@@ -128,6 +129,7 @@ def judge(
             or bodiless(weighed, fitted, test)
             or of_all_joints(weighed, fitted, test)
             or at_one_place(weighed, fitted, test)
+            or paceless(weighed, fitted, test)
         )
         tries += 1
         # what is there without being a finding is fitted, or others would explain it; a curve only here,

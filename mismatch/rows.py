@@ -98,7 +98,7 @@ def _own(track: Track, part: slice, setup: Setup) -> Array:
     cache: dict[tuple[str, tuple[tuple[str, float], ...]], dict[str, Array]] = {}
     direction = signs.sign(track.qd[part], WIDTH)
     drive = _torque(track, part, setup)
-    swift = drive - track.motor[part] + track.swift[part]
+    swift, dry = track.swift[part], drive - track.motor[part]
     for c in setup.space.own:
         if c.term == "gain":
             found.append(-drive)
@@ -107,7 +107,8 @@ def _own(track: Track, part: slice, setup: Setup) -> Array:
         elif c.term == REPEAT:
             found.append(np.zeros_like(direction))  # of what other recordings leave: evidence.py
         elif c.term == LATE:
-            found.append(_late(track, part, swift, c.value["around"]))
+            around = c.value["around"]
+            found.append(_late(track, part, swift, around, True) + _late(track, part, dry, around))
         elif remembers(c.term):
             found.append(track.held[part, :, place])
             place += 1
@@ -134,10 +135,14 @@ def _torque(track: Track, part: slice, setup: Setup) -> Array:
     return np.asarray(track.motor[part] + dry + setup.friction[:, 1] * qd, np.float64)
 
 
-def _late(track: Track, part: slice, torque: Array, delay: float) -> Array:
-    """Return what a torque (T, N) differs by when it comes late, per second of delay."""
-    t = track.time[part]
-    return np.asarray((between(np.maximum(t - delay, t[0]), t, torque) - torque) / delay, np.float64)
+def _late(track: Track, part: slice, torque: Array, delay: float, centred: bool = False) -> Array:
+    """Return what a torque (T, N) differs by when it comes late, per second of delay.
+
+    centred: as its slope, which has nothing in common with the noise that the rows themselves have of it.
+    """
+    t, ahead = track.time[part], 0.5 * delay if centred else 0.0
+    early, late = (between(np.clip(x, t[0], t[-1]), t, torque) for x in (t + ahead, t + ahead - delay))
+    return np.asarray((late - early) / delay, np.float64)
 
 
 def _common(track: Track, part: slice, setup: Setup) -> tuple[Array, Array]:
@@ -160,10 +165,11 @@ def _common(track: Track, part: slice, setup: Setup) -> tuple[Array, Array]:
         moved.append(np.zeros_like(load))
         kept.append(turned[:, :, k])
     # what friction does at reversals depends on more than the clock, so it gets a coefficient of its own
-    for torque in (track.steady[part], _torque(track, part, setup) - track.motor[part], track.swift[part]):
+    dry = _torque(track, part, setup) - track.motor[part]
+    for torque, noisy in ((track.steady[part], True), (dry, False), (track.swift[part], True)):
         for delay in DELAYS:
             moved.append(np.zeros_like(load))
-            kept.append(_late(track, part, torque, delay))
+            kept.append(_late(track, part, torque, delay, noisy))
     for k in range(len(setup.lacking)):
         moved.append(track.beyond[part, k, :n])
         kept.append(-track.beyond[part, k, n:])
