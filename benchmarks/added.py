@@ -178,6 +178,22 @@ def plain_columns(space: Space, j: int) -> list[int]:
     return [*range(start), *own]
 
 
+def plain_left(evidence: Evidence) -> list[Array]:
+    """Return what base parameters, offset, Coulomb and viscous friction leave of each run (n, N), Nm.
+
+    Least squares of each joint by itself, over all rows in which it moves.
+    """
+    moving = joint_moves(replace(evidence, observed=(True,) * len(evidence.runs)))
+    left = np.concatenate([r.torque for r in evidence.runs])
+    for j in range(evidence.setup.space.dof):
+        columns = np.concatenate(
+            [r.columns[j][:, plain_columns(evidence.setup.space, j)] for r in evidence.runs]
+        )
+        used = moving[:, j]
+        left[:, j] -= columns @ np.linalg.lstsq(columns[used], left[used, j], rcond=None)[0]
+    return np.split(left, np.cumsum([len(r) for r in evidence.runs])[:-1])
+
+
 class _Sight:
     """How large torques are beside the residuals where joints move.
 

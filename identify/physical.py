@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 
 #: The projection is left out when it would move the parameters by less than this many standard deviations.
 _NEGLIGIBLE = 1e-2
+#: Exact by interior points; where these fail on an ill-conditioned program, slower and coarser by splitting.
+_SOLVERS = ("CLARABEL", "SCS")
 #: Weight of the full set's own size: what no motion shows would else be free, and the program ill-posed.
 _SMALL = 1e-6
 
@@ -66,8 +68,11 @@ def project(
     program = _program(len(estimate), mapping, tuple(positive))
     root = np.linalg.cholesky(information * np.outer(scale, scale)).T
     program.root.value, program.start.value, program.scale.value = root, estimate, scale
-    program.problem.solve(solver="CLARABEL")
-    if program.step.value is None:
+    for solver in _SOLVERS:
+        program.problem.solve(solver=solver)
+        if program.step.value is not None:
+            break
+    else:
         raise RuntimeError("the projection onto physical parameters found no solution")
     distance = float(np.linalg.norm(root @ program.step.value))
     if distance < _NEGLIGIBLE:

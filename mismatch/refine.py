@@ -92,8 +92,18 @@ def _fit(evidence: Evidence, directions: Directions, used: NDArray[np.int64]) ->
     positive = [
         k for k, u in enumerate(used) if _column(evidence, int(u)) in (("coulomb", "Fc"), ("viscous", "Fv"))
     ]
-    information = np.linalg.inv(spread + 1e-12 * np.diag(np.diag(spread)))
-    theta, _ = project(theta, (information + information.T) / 2, evidence.setup.physics.map, positive)
+    # the rest follows what is held to physics as their covariance says: columns of friction are nearly alike,
+    # and a cone program of all of them is ill-conditioned
+    held = [*range(len(evidence.setup.space.base)), *positive]
+    own = spread[np.ix_(held, held)]
+    information = np.linalg.inv(own + 1e-12 * np.diag(np.diag(own)))
+    first = len(held) - len(positive)
+    nearest, _ = project(
+        theta[held], (information + information.T) / 2, evidence.setup.physics.map, range(first, len(held))
+    )
+    change = nearest - theta[held]
+    theta = theta + spread[:, held] @ (information @ change)
+    theta[held] = nearest
     return theta, (spread + spread.T) / 2
 
 
