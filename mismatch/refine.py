@@ -144,7 +144,7 @@ def _terms(
 
     def add(
         term: str, joint: int, fixed: Mapping[str, float], linear: Mapping[str, tuple[float, float]],
-        form: object = (),
+        form: object = (), source: str = "explain",
     ) -> None:  # fmt: skip
         entry = CATALOGUE[term]
         numbers = {n: p.default for n, p in entry.parameters.items() if p.default is not None} | dict(fixed)
@@ -152,7 +152,7 @@ def _terms(
             numbers["width"] = _WIDTH
         numbers |= {n: _short(v) for n, (v, _) in linear.items()}
         found[term, joint, form] = TermData(
-            name=term, joint=joint + 1, parameters=numbers, source="explain",
+            name=term, joint=joint + 1, parameters=numbers, source=source,
             std={n: _short(s) for n, (_, s) in linear.items()},
         )  # fmt: skip
 
@@ -172,7 +172,8 @@ def _terms(
             if x.term == c.terms[0] and x.values == c.values
         }
         fixed = {n: v for n, v in c.values if n != "width"} | dict(values.get(position, {}))
-        add(c.terms[0], c.joint, fixed, {n: (full[i], std[i]) for n, i in mine.items()}, c.values)
+        source = "explain" if position < len(accepted) else "explain, the reference's own"
+        add(c.terms[0], c.joint, fixed, {n: (full[i], std[i]) for n, i in mine.items()}, c.values, source)
         if c.effect == "cable_spring":
             at = next(space.own_index(c.joint, k) for k, x in enumerate(space.own) if x.term == "offset")
             add("offset", c.joint, {}, {"c": (full[at], std[at])})
