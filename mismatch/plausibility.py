@@ -8,6 +8,8 @@ from .selection import Directions
 
 #: Friction over the angle is a wave unless any curve explains so much more than it.
 NO_WAVE = 0.5
+#: What turns with the drive's torque is an amplifier's where that sign explains so much more.
+DRIVEN = 0.1
 #: Nats by which a curve that is no physics leads, to be believed in its place.
 _LEADS = 10.0
 #: What friction does around zero speed alone.
@@ -73,9 +75,10 @@ def misshapen(weighed: Evidence, model: Directions, test: Scored) -> tuple[str, 
     c = test.candidate
     if c.joint is None:
         return "", ()
-    over, least = "drive sign", _LEADS
+    over, part = "drive sign", DRIVEN
     if c.effect == "position_dependent_friction":
-        over, least = "q sign", max(_LEADS, NO_WAVE * test.evidence)
+        over, part = "q sign", NO_WAVE
+    least = max(_LEADS, part * test.evidence)
     curve = tuple(weighed.found.curve[c.joint][k] for k, (name, _) in enumerate(names()) if name == over)
     other = scored(weighed, model, [Candidate("unknown", c.joint, curve)])[0]
     if (lead := other.evidence - test.evidence) > least:
