@@ -6,8 +6,8 @@ from typing import Any
 from .quantities import Quantity
 from .report.wording import joints_text, title
 
-#: Findings that are told with their numbers; weaker ones are told by name and joints.
-_IN_FULL = 4
+#: Findings up to which all are told with their numbers; of more, so many: the others by name and joints.
+_FEW, _FIRST = 4, 2
 
 
 def sentence(verdict: str, findings: Sequence[Mapping[str, Any]], reference: bool = False) -> str:
@@ -20,12 +20,13 @@ def sentence(verdict: str, findings: Sequence[Mapping[str, Any]], reference: boo
         return "These recordings cannot be used: nothing was concluded from them."
     named = [f for f in findings if f["effect"] != "unknown"]
     unknown = sorted({j for f in findings if f["effect"] == "unknown" for j in f["joints"]})
+    full = _FIRST if len(named) > _FEW else _FEW
     parts = [
         f"{title(f['effect'])}{_held(f)} on {joints_text(f['joints'])}{_numbers(f['parameters'])}"
-        for f in named[:_IN_FULL]
+        for f in named[:full]
     ]
     rest = dict[str, set[int]]()
-    for f in named[_IN_FULL:]:
+    for f in named[full:]:
         rest.setdefault(f["effect"], set()).update(f["joints"])
     parts += [f"{title(effect)} on {joints_text(sorted(joints))}" for effect, joints in rest.items()]
     if unknown:

@@ -15,6 +15,8 @@ def test_strong_findings_have_numbers_and_weak_ones_of_a_kind_stand_together() -
     strong = [finding("torque_ripple", j, 0.5) for j in (1, 2, 3, 4)]
     weak = [finding("presliding_hysteresis", j, 0.25) for j in (6, 5)]
     said = sentence("mismatch", [*strong, *weak])
-    assert said.count("0.5 ± 0.01 Nm") == 4
+    assert said.count("0.5 ± 0.01 Nm") == 2
+    assert "turn on joints 3 and 4; and" in said
     assert "0.25" not in said
+    assert sentence("mismatch", strong).count("0.5 ± 0.01 Nm") == 4
     assert "after a reversal on joints 5 and 6." in said
