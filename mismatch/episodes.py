@@ -16,6 +16,8 @@ Array = NDArray[np.float64]
 LEVEL, WINDOW = 6.0, 0.25
 #: s; shorter pauses belong to the episode, shorter episodes are none.
 PAUSE, SHORTEST = 0.6, 0.15
+#: A joint at rest holds up to so much of its Coulomb level, since breaking away takes more than moving on.
+HELD = 1.5
 #: Share of the time that episodes may take: what is always there does not come and go.
 MOST = 0.3
 
@@ -42,7 +44,7 @@ def episodes(
 ) -> list[Episode]:
     """Find episodes in residuals (n, N) of some runs; none when they take too much of the time.
 
-    coulomb (N,): Nm; a joint at rest holds that much without anything being there.
+    coulomb (N,): Nm; a joint at rest holds about that much without anything being there.
     """
     found, time, taken = list[Episode](), 0, 0
     for run, left in zip(which, residuals, strict=True):
@@ -71,7 +73,7 @@ def loudness(rows: Rows, left: Array, scales: Scales, coulomb: Array) -> Array:
 def _scaled(rows: Rows, left: Array, scales: Scales, coulomb: Array) -> Array:
     """Return residuals (n, N) in units of their noise."""
     sigma = scales.sigma.copy()
-    sigma[:, 2] = np.maximum(sigma[:, 2], coulomb)
+    sigma[:, 2] = np.maximum(sigma[:, 2], HELD * coulomb)
     return np.asarray(left / np.take_along_axis(sigma[None], regime(rows)[:, :, None], axis=2)[:, :, 0])
 
 

@@ -4,6 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
+import numpy as np
+
 from . import yardstick
 from .acceptance import EVIDENCE, STEADY, objection
 from .bodies import bodiless
@@ -39,6 +41,8 @@ RIGID = (
     "payload", "link_inertial", "rotor_inertia", "base_free", "frozen_joint_coupling", "dropped_coupling",
 )  # fmt: skip
 RIGID_SHADOW = 0.01
+#: Hz; up to it a delay d is sought. Its column is a slope, and leaves d^2 / 2 of the torque's second one.
+_FASTEST = 4.0
 MASSES = ("payload", "link_inertial", "base_free")
 #: A body, or two of them, that explain this share of what all base parameters together do have the name.
 BODIES, ALL_OF_IT = ("payload", "link_inertial", "rotor_inertia"), 0.9
@@ -205,6 +209,8 @@ def shadow(test: Scored, accepted: Sequence[Accepted], joints: int) -> str:
             return "is what the other joint's gear shakes the arm with"
         both = near_zero(first) and near_zero(c)
         least = max(shade(a, joints), NEAR_SHADOW * a.score.evidence if both else 0.0)
+        if first.effect == "time_delay" and c.effect in (*RIGID, "joint_elasticity"):
+            least = max(least, (np.pi * _FASTEST * a.score.size[0]) ** 2 * a.score.evidence)
         if first.effect in MASSES and c.effect == "drive_gain":  # a mass scales with the gains
             least = SHADOW / joints * a.score.evidence
         small = test.evidence < least and test.consistency < OWN
