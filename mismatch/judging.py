@@ -34,6 +34,11 @@ NEAR_SHADOW, NEAR_CLOSE = 0.3, 0.25
 LEVELS, _RISEN = ("stribeck", "coulomb_friction"), 2.0
 #: What shakes the whole arm: on another joint it is known to this share.
 SHAKING, _SHAKEN = ("joint_elasticity", "backlash"), 0.3
+#: What stands with the arm's pose, on another joint than that whose gear gives way and so turns the links.
+BY_POSE, _TURNED = (
+    "cable_spring", "current_offset", "friction_asymmetry", "encoder_offset", "position_dependent_friction",
+    "link_inertial",
+), 0.2  # fmt: skip
 #: Unless a jackknife cannot shake its size by 1 %: what a form leaves varies with the motion.
 OWN = 100.0
 #: The rigid body's form is exact: what it leaves is time and gains that are off by a few percent, squared.
@@ -204,9 +209,10 @@ def shadow(test: Scored, accepted: Sequence[Accepted], joints: int) -> str:
         level = first.effect in LEVELS and first.joint == c.joint and is_short(c)
         if level and abs(test.size[0]) < _RISEN * abs(a.score.size[0]):
             return "what friction rose by builds up over the short travel that all of it does"
-        shaken = first.effect in SHAKING and c.effect in SHAKING and first.joint != c.joint
-        if shaken and test.evidence < _SHAKEN * a.score.evidence:
-            return "is what the other joint's gear shakes the arm with"
+        moved = _SHAKEN if c.effect in SHAKING else _TURNED if c.effect in BY_POSE else 0.0
+        elsewhere = first.effect in SHAKING and first.joint != c.joint
+        if elsewhere and test.evidence < moved * a.score.evidence:
+            return "is what the other joint's gear moves the arm by"
         both = near_zero(first) and near_zero(c)
         least = max(shade(a, joints), NEAR_SHADOW * a.score.evidence if both else 0.0)
         if first.effect == "time_delay" and c.effect in (*RIGID, "joint_elasticity"):

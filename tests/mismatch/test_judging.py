@@ -1,5 +1,6 @@
 """What is believed: every rule refuses by itself, and one block proves nothing."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -248,7 +249,7 @@ def test_a_gear_that_swings_shakes_the_other_joints() -> None:
         Candidate(x, j, (j,)) for j, x in enumerate(("joint_elasticity", "backlash", "viscous_friction"))
     )
     first = [Accepted(scored([90, 110], evidence=1000.0, candidate=soft), (), (), 0.5)]
-    assert "shakes" in shadow(scored([9, 11], evidence=200.0, candidate=other), first, 6)
+    assert "moves the arm" in shadow(scored([9, 11], evidence=200.0, candidate=other), first, 6)
     assert shadow(scored([9, 11], evidence=400.0, candidate=other), first, 6) == ""
     assert shadow(scored([9, 11], evidence=200.0, candidate=drag), first, 6) == ""
 
@@ -261,3 +262,23 @@ def test_a_rotor_does_not_lose_nearly_all_of_its_inertia(published, change, beli
     physics = SimpleNamespace(reflected=np.array([published]))
     evidence = SimpleNamespace(setup=SimpleNamespace(physics=physics, friction=np.ones((1, 2))))
     assert (implausible(evidence, test) == "") == believed
+
+
+def test_a_gear_that_gives_way_turns_the_links_of_other_joints() -> None:
+    soft = Candidate("joint_elasticity", 2, (0, 1), whole=True)
+    gear = [Accepted(scored([900, 1100], evidence=2000.0, candidate=soft), (), (), 0.5)]
+    cable, link = Candidate("cable_spring", 1, (2,)), Candidate("link_inertial", 1, (3,))
+    drag = Candidate("nonlinear_viscous", 1, (4,))
+    for pose in (cable, link):
+        assert "gear" in shadow(scored([50, 50], candidate=pose), gear, 6)
+        assert shadow(scored([250, 250], evidence=500.0, candidate=pose), gear, 6) == ""
+    assert shadow(scored([50, 50], candidate=drag), gear, 6) == ""
+
+
+def test_what_a_long_delay_leaves_is_no_body() -> None:
+    late = Candidate("time_delay", None, (0, 1), (("around", 0.02), ("jerk", 1.0)))
+    lighter = scored([150, 150], evidence=300.0, candidate=Candidate("rotor_inertia", 2, (2,)))
+    for delay, told in ((0.02, "%"), (0.005, "")):
+        first = replace(scored([2500, 2500], evidence=5000.0, candidate=late), size=np.array([delay, delay]))
+        said = shadow(lighter, [Accepted(first, (), (), 0.5)], 6)
+        assert told in said if told else said == ""
