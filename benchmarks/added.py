@@ -178,18 +178,26 @@ def plain_columns(space: Space, j: int) -> list[int]:
     return [*range(start), *own]
 
 
+def _plain_rows(evidence: Evidence, j: int) -> Array:
+    """Return joint j's plain columns (n, P) along all runs."""
+    plain = plain_columns(evidence.setup.space, j)
+    return np.concatenate([r.columns[j][:, plain] for r in evidence.runs])
+
+
+def _moves_anywhere(evidence: Evidence) -> NDArray[np.bool_]:
+    """Return the rows (n, N) of all runs, the reference's too, in which a joint moves."""
+    return joint_moves(replace(evidence, observed=(True,) * len(evidence.runs)))
+
+
 def plain_left(evidence: Evidence) -> list[Array]:
     """Return what base parameters, offset, Coulomb and viscous friction leave of each run (n, N), Nm.
 
     Least squares of each joint by itself, over all rows in which it moves.
     """
-    moving = joint_moves(replace(evidence, observed=(True,) * len(evidence.runs)))
+    moving = _moves_anywhere(evidence)
     left = np.concatenate([r.torque for r in evidence.runs])
     for j in range(evidence.setup.space.dof):
-        columns = np.concatenate(
-            [r.columns[j][:, plain_columns(evidence.setup.space, j)] for r in evidence.runs]
-        )
-        used = moving[:, j]
+        columns, used = _plain_rows(evidence, j), moving[:, j]
         left[:, j] -= columns @ np.linalg.lstsq(columns[used], left[used, j], rcond=None)[0]
     return np.split(left, np.cumsum([len(r) for r in evidence.runs])[:-1])
 
@@ -201,13 +209,12 @@ class _Sight:
     """
 
     def __init__(self, evidence: Evidence, left: Sequence[Array], whole: bool) -> None:
-        everywhere = replace(evidence, observed=(True,) * len(evidence.runs))
-        self.moving, self.bases = joint_moves(everywhere), list[Array]()
+        self.moving, self.bases = _moves_anywhere(evidence), list[Array]()
         self.noise = rms_where(left, self.moving)
         for j in range(0 if whole else evidence.setup.space.dof):
-            plain = plain_columns(evidence.setup.space, j)
-            columns = np.concatenate([r.columns[j][:, plain] for r in evidence.runs])
-            self.bases.append(np.linalg.svd(columns[self.moving[:, j]], full_matrices=False)[0])
+            self.bases.append(
+                np.linalg.svd(_plain_rows(evidence, j)[self.moving[:, j]], full_matrices=False)[0]
+            )
 
     def ratio(self, torque: Sequence[Array]) -> float:
         """Return the largest ratio of rms over the joints."""

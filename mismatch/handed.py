@@ -8,13 +8,12 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
 
 from .acceptance import EVIDENCE
 from .candidates import Candidate
 from .evidence import Evidence, evenly_weighed
 from .judging import Accepted
-from .naming import TIGHT, reweighed
+from .naming import TIGHT, reweighed, shared
 from .refit import parameters
 from .selection import Directions, log_evidence
 
@@ -47,8 +46,7 @@ def handed(
             if c.usual:
                 keep.append(space.own_index(j, k))
                 std.append(float(evidence.own_std[j, k]))
-    vectors = sparse.eye(space.size, format="csc")[:, keep]
-    model = Directions(vectors, np.array(std), np.ones(len(keep), bool)) + _shared(evidence, shapes)
+    model = shared(space, keep, std) + _of_both(evidence, shapes)
     inertial = () if evidence.has_reference else _INERTIAL  # there the base parameters themselves are free
     named = [
         c for a in accepted if a.score.candidate.effect not in inertial for c in a.score.candidate.columns
@@ -86,34 +84,37 @@ def shapes_of(evidence: Evidence, accepted: Sequence[Accepted]) -> tuple[Candida
         model = handed(weighed, accepted, found)
         weighed = reweighed(weighed, model, even=True)
         taken = {(c.joint, c.terms) for c in found}
-        some = [c for c in offered if (c.joint, c.terms) not in taken]
-        new = [x for j in range(weighed.setup.space.dof) if (x := _best(weighed, model, some, j))]
+        gains = _gains(weighed, model, [c for c in offered if (c.joint, c.terms) not in taken])
+        new = [x for j in range(weighed.setup.space.dof) if (x := _best(weighed, model, gains, j))]
         if not new:
             break
         found += new
     return tuple(found)
 
 
-def _best(
-    evidence: Evidence, model: Directions, offered: Sequence[Candidate], joint: int
-) -> Candidate | None:
-    """Return the shape that a joint's rows of both sides ask for most, if they do."""
+def _gains(
+    evidence: Evidence, model: Directions, offered: Sequence[Candidate]
+) -> list[tuple[float, Candidate]]:
+    """Return each shape's rise of the log evidence of both sides, nats, and the shape, best first."""
     before = log_evidence(evidence.sums, model)
-    gains = [
-        (log_evidence(evidence.sums, model + _shared(evidence, [c])) - before, c)
-        for c in offered
-        if c.joint == joint
-    ]
-    for gain, c in sorted(gains, key=lambda x: -x[0]):
-        if gain < EVIDENCE:
-            return None
-        shape = _shared(evidence, [c])
+    gains = [(log_evidence(evidence.sums, model + _of_both(evidence, [c])) - before, c) for c in offered]
+    return sorted(gains, key=lambda x: -x[0])
+
+
+def _best(
+    evidence: Evidence, model: Directions, gains: Sequence[tuple[float, Candidate]], joint: int
+) -> Candidate | None:
+    """Return the shape that a joint's rows ask for most, if they do and it is conceivable."""
+    for gain, c in gains:
+        if c.joint != joint or gain < EVIDENCE:
+            continue
+        shape = _of_both(evidence, [c])
         if c.conceivable(shape.vectors.T @ (parameters(evidence, model + shape) - evidence.mean)):
             return c
     return None
 
 
-def _shared(evidence: Evidence, shapes: Sequence[Candidate]) -> Directions:
+def _of_both(evidence: Evidence, shapes: Sequence[Candidate]) -> Directions:
     """Return the columns of shapes as those of both sides."""
     columns = evidence.found.directions.take([c for x in shapes for c in x.columns])
     return Directions(columns.vectors, columns.std, np.ones(len(columns), bool))

@@ -79,7 +79,7 @@ def fitted(
     alone = fit(sums, arm, sums.total)
     sizes = (space.size, len(TEN)), (len(TEN), len(TEN)), (len(TEN),)
 
-    def sums_of(run: tuple[LoadedRun, Mask]) -> tuple[Array, Array, Array]:
+    def of_run(run: tuple[LoadedRun, Mask]) -> tuple[Array, Array, Array]:
         x, h = run
         target, (cross, own, right) = residual(x.rows, space, evidence.mean), map(np.zeros, sizes)
         for j, whiten in enumerate(roots(x.rows, evidence.noise)):
@@ -89,7 +89,7 @@ def fitted(
             right += load.T @ (whiten @ target[:, j])
         return cross, own, right
 
-    cross, own, right = map(sum, zip(*each(sums_of, zip(runs, held, strict=True)), strict=True))
+    cross, own, right = map(sum, zip(*each(of_run, zip(runs, held, strict=True)), strict=True))
     b = arm.vectors.T @ cross
     solved = cho_solve(alone.factor, np.column_stack([b, alone.right]))
     answer = arm.vectors @ solved

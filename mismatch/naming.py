@@ -94,7 +94,7 @@ def nuisance(evidence: Evidence) -> Directions:
             elif c.term in EVERY_GEAR:
                 keep.append(space.own_index(j, k))
                 std.append(level * _usual_part(c))
-    return _softened(evidence, _of(space, keep, std))
+    return _softened(evidence, shared(space, keep, std))
 
 
 def _usual_part(column: Column) -> float:
@@ -104,7 +104,7 @@ def _usual_part(column: Column) -> float:
     return MUCH if column.value.get("vs", 1.0) <= NARROW else EVERY_GEAR[column.term]
 
 
-def _of(space: Space, keep: Sequence[int], std: Sequence[float]) -> Directions:
+def shared(space: Space, keep: Sequence[int], std: Sequence[float]) -> Directions:
     """Return parameters of the space as directions that both sides share."""
     vectors = sparse.eye(space.size, format="csc")[:, list(keep)]
     return Directions(vectors, np.array(std), np.ones(len(keep), bool))
@@ -115,7 +115,7 @@ def _softened(evidence: Evidence, model: Directions) -> Directions:
     space, best = evidence.setup.space, log_evidence(evidence.sums, model)
     for j in range(space.dof):
         for k in (k for k, c in enumerate(space.own) if c.soft):
-            softer = model + _of(space, [space.own_index(j, k)], [float(evidence.own_std[j, k])])
+            softer = model + shared(space, [space.own_index(j, k)], [float(evidence.own_std[j, k])])
             if (found := log_evidence(evidence.sums, softer)) > best:
                 best, model = found, softer
     return model

@@ -97,8 +97,8 @@ def _own(track: Track, part: slice, setup: Setup) -> Array:
     found, place = list[Array](), 0
     cache: dict[tuple[str, tuple[tuple[str, float], ...]], dict[str, Array]] = {}
     direction = signs.sign(track.qd[part], WIDTH)
-    drive = _torque(track, part, setup)
-    swift, dry = track.swift[part], drive - track.motor[part]
+    friction, swift = _friction(track, part, setup), track.swift[part]
+    drive = track.motor[part] + friction
     for c in setup.space.own:
         if c.term == "gain":
             found.append(-drive)
@@ -108,7 +108,7 @@ def _own(track: Track, part: slice, setup: Setup) -> Array:
             found.append(np.zeros_like(direction))  # of what other recordings leave: evidence.py
         elif c.term == LATE:
             around = c.value["around"]
-            found.append(_late(track, part, swift, around, True) + _late(track, part, dry, around))
+            found.append(_late(track, part, swift, around, True) + _late(track, part, friction, around))
         elif remembers(c.term):
             found.append(track.held[part, :, place])
             place += 1
@@ -128,11 +128,10 @@ def _own(track: Track, part: slice, setup: Setup) -> Array:
     return np.stack(found, axis=2)
 
 
-def _torque(track: Track, part: slice, setup: Setup) -> Array:
-    """Drive torque (T, N) that the setup's parameters and friction expect."""
+def _friction(track: Track, part: slice, setup: Setup) -> Array:
+    """Friction (T, N) that the setup expects, Nm."""
     qd = track.qd[part]
-    dry = setup.friction[:, 0] * signs.sign(qd, WIDTH)
-    return np.asarray(track.motor[part] + dry + setup.friction[:, 1] * qd, np.float64)
+    return np.asarray(setup.friction[:, 0] * signs.sign(qd, WIDTH) + setup.friction[:, 1] * qd, np.float64)
 
 
 def _late(track: Track, part: slice, torque: Array, delay: float, centred: bool = False) -> Array:
@@ -165,8 +164,8 @@ def _common(track: Track, part: slice, setup: Setup) -> tuple[Array, Array]:
         moved.append(np.zeros_like(load))
         kept.append(turned[:, :, k])
     # what friction does at reversals depends on more than the clock, so it gets a coefficient of its own
-    dry = _torque(track, part, setup) - track.motor[part]
-    for torque, noisy in ((track.steady[part], True), (dry, False), (track.swift[part], True)):
+    friction = _friction(track, part, setup)
+    for torque, noisy in ((track.steady[part], True), (friction, False), (track.swift[part], True)):
         for delay in DELAYS:
             moved.append(np.zeros_like(load))
             kept.append(_late(track, part, torque, delay, noisy))

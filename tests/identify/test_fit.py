@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from residuum.errors import InputError
+from residuum.identify import physical
 from residuum.identify.baseline import Options, fit_files
 from residuum.identify.physical import LinkMap, link_map, project
 from residuum.identify.requests import TermRequest, parse_request
@@ -97,6 +98,18 @@ def test_physical_links_stay_and_impossible_ones_move(small):
     moved, distance = project(impossible, information, mapping, ())
     assert distance > 1
     assert moved[k] > -1e-6
+
+
+def test_splitting_stands_in_for_interior_points(small, monkeypatch):
+    """Coarser, but the same arm: what is impossible moves as far."""
+    mapping, found = link_map(small.model), []
+    theta = np.array([v.value for v in small.model.base.values()])
+    std = np.maximum(0.05 * np.abs(theta), 0.01)
+    theta[list(small.model.base).index("IA3")] = -1.0
+    for solver in ("CLARABEL", "SCS"):
+        monkeypatch.setattr(physical, "_SOLVERS", (solver,))
+        found.append(project(theta, np.diag(1 / std**2), mapping, ())[0])
+    np.testing.assert_allclose(found[1] / std, found[0] / std, atol=0.05)
 
 
 def test_the_map_of_links_is_the_published_model(small, tools):

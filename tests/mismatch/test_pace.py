@@ -31,14 +31,19 @@ def noisy(arm, along, late: float = 0.0) -> Evidence:
     return gather(recordings, [True] * 3, arm.model, arm.robot)
 
 
+@pytest.fixture(scope="module")
+def on_time(arm, along) -> Evidence:
+    return noisy(arm, along)
+
+
 def delay_of(evidence: Evidence) -> Scored:
     return next(
         s for s in ranked(evidence, nuisance(evidence), UNSEEN) if s.candidate.key == ("time_delay", None)
     )
 
 
-def test_noise_of_speeds_is_no_delay(arm, along) -> None:
-    found = delay_of(noisy(arm, along))
+def test_noise_of_speeds_is_no_delay(on_time) -> None:
+    found = delay_of(on_time)
     assert found.evidence < 10.0
     assert abs(found.size[0]) < 4 * found.std[0]
 
@@ -50,8 +55,7 @@ def test_a_delay_has_its_size_at_every_pace(arm, along) -> None:
     assert paceless(evidence, nuisance(evidence), found) == ""
 
 
-def test_what_only_fast_torques_show_is_refused(arm, along) -> None:
-    evidence = noisy(arm, along)
-    found = delay_of(evidence)
+def test_what_only_fast_torques_show_is_refused(on_time) -> None:
+    found = delay_of(on_time)
     claimed = replace(found, size=found.size + np.array([0.05, 0.0]))
-    assert "% of its size in slow torques" in paceless(evidence, nuisance(evidence), claimed)
+    assert "% of its size in slow torques" in paceless(on_time, nuisance(on_time), claimed)
