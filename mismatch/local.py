@@ -55,12 +55,13 @@ def gains(weighed: Evidence, model: Directions, test: Scored, j: int) -> Iterato
 
 
 def concentrated(q: Array, gain: Array, acts: Array) -> str:
-    """Return in words that gains (n,) come from one place of the angle q (n,), rad, or nothing.
+    """Return in words that gains (n,) come from one place of the angle q (n,), rad, if any, or nothing.
 
     acts (n,): half the squared change of the fit over the noise's variance. Where a hypothesis holds, it is
     the gain's mean, and half the gain's variance.
     """
-    whole = float(gain.sum())
+    if (whole := float(gain.sum())) <= 0:
+        return "explains nothing of its own joint's torque"
     for start in (0.0, 0.5 * WIDTH):
         place = np.floor((q - start) / WIDTH).astype(int)
         first = int(place.min(initial=0))

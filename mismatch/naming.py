@@ -19,15 +19,18 @@ from .lacking import widths
 from .refit import observed_runs, parameters
 from .repeats import coefficients
 from .selection import Directions, Eliminated, eliminate, log_evidence
+from .signs import sign
 
 Array = NDArray[np.float64]
 
 #: Base parameters of the published model may be off by this share of their wide prior before it is a finding.
-TIGHT = 0.03
+TIGHT = 0.007
 #: Around standstill every gear differs from Coulomb's law by a few percent of it, in one shape or another,
 EVERY_GEAR = {"stribeck": 0.01, "presliding": 0.01, "lag": 0.03}
 #: and by much of it where it is narrower than this (Stribeck's speed, rad/s).
 NARROW, MUCH = 0.02, 0.3
+#: A blend of gentle signs may rise this much above the level it ends at: sharper bends than theirs take that.
+PEAK = 0.15
 #: rad; over so short a travel the whole Coulomb level may build up, over more of it less and less.
 SHORTEST = 3e-4
 #: Of a column's prior width, for columns that only describe the reference's own imperfections.
@@ -111,14 +114,26 @@ def shared(space: Space, keep: Sequence[int], std: Sequence[float]) -> Direction
 
 
 def _softened(evidence: Evidence, model: Directions) -> Directions:
-    """Let each joint's Coulomb friction pass zero speed as gently as its rows ask for, if they do."""
+    """Let each joint's Coulomb friction pass zero speed as gently as its rows ask for, if they do.
+
+    But only rising: a gentle part less a gentler one has a peak, which is Stribeck's and to be named.
+    """
     space, best = evidence.setup.space, log_evidence(evidence.sums, model)
     for j in range(space.dof):
         for k in (k for k, c in enumerate(space.own) if c.soft):
             softer = model + shared(space, [space.own_index(j, k)], [float(evidence.own_std[j, k])])
-            if (found := log_evidence(evidence.sums, softer)) > best:
+            if (found := log_evidence(evidence.sums, softer)) > best and _rises(evidence, softer, j):
                 best, model = found, softer
     return model
+
+
+def _rises(evidence: Evidence, model: Directions, joint: int) -> bool:
+    """Return whether a joint's Coulomb friction has no peak in a model's fit but a narrow one."""
+    space, theta = evidence.setup.space, parameters(evidence, model)
+    parts = [(theta[space.own_index(joint, k)], c) for k, c in enumerate(space.own) if c.term == "coulomb"]
+    speeds = np.geomspace(NARROW, 1.0, 50)  # rad/s
+    friction = np.sum([size * sign(speeds, c.value["width"]) for size, c in parts], axis=0)
+    return float(friction.max()) <= (1 + PEAK) * float(friction[-1])
 
 
 def _rich(evidence: Evidence) -> Directions:

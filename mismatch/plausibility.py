@@ -10,8 +10,8 @@ from .selection import Directions
 NO_WAVE = 0.5
 #: What turns with the drive's torque is an amplifier's where that sign explains so much more.
 DRIVEN = 0.1
-#: Nats by which a curve that is no physics leads, to be believed in its place.
-_LEADS = 10.0
+#: Nats by which a curve that is no physics leads, as any rival does, to be believed in its place.
+_LEADS = 5.0
 #: What friction does around zero speed alone.
 NEAR_ZERO = ("stribeck", "presliding_hysteresis", "velocity_lag")
 #: What builds up with travel or late is much of the Coulomb level, or it is something else; over less travel
