@@ -12,10 +12,20 @@ from .bodies import bodiless
 from .candidates import Candidate
 from .coverage import SLOW
 from .evidence import Evidence
+from .firm import beside_firm
 from .local import at_one_place
 from .naming import Scored, chosen, nuisance, ranked, scored, steadiness, tested
 from .pace import paceless
-from .plausibility import NEAR_ZERO, SYNCHRONOUS, implausible, is_short, misshapen, near_zero, of_all_joints
+from .plausibility import (
+    NEAR_ZERO,
+    SYNCHRONOUS,
+    implausible,
+    is_short,
+    misshapen,
+    near_zero,
+    of_all_joints,
+    peakless,
+)  # fmt: skip
 from .selection import Directions
 from .share import share_of
 
@@ -130,6 +140,7 @@ def judge(
             refused.append((best, why))
             continue
         test, weighed = tested(evidence, fitted, best.candidate)
+        test = beside_firm(weighed, fitted, test)
         part = share_of(weighed, fitted, test)
         why = (
             objection(test, part)
@@ -139,6 +150,7 @@ def judge(
             or of_all_joints(weighed, fitted, test)
             or at_one_place(weighed, fitted, test)
             or paceless(weighed, fitted, test)
+            or peakless(weighed, fitted, test)
         )
         tries += 1
         # what is there without being a finding is fitted, or others would explain it; a curve only here,

@@ -16,10 +16,10 @@ from .columns import BASELINE, BY_NAME, REPEAT, Column, Space
 from .evidence import Evidence, residual, weighed
 from .grams import Scales, evenly, scales_of
 from .lacking import widths
+from .peaks import peak
 from .refit import observed_runs, parameters
 from .repeats import coefficients
 from .selection import Directions, Eliminated, eliminate, log_evidence
-from .signs import sign
 
 Array = NDArray[np.float64]
 
@@ -29,7 +29,8 @@ TIGHT = 0.007
 EVERY_GEAR = {"stribeck": 0.01, "presliding": 0.01, "lag": 0.03}
 #: and by much of it where it is narrower than this (Stribeck's speed, rad/s).
 NARROW, MUCH = 0.02, 0.3
-#: A blend of gentle signs may rise this much above the level it ends at: sharper bends than theirs take that.
+#: and how it passes zero speed may rise by this much of it above it, since some bends are sharper than a
+#: smooth sign's.
 PEAK = 0.15
 #: rad; over so short a travel the whole Coulomb level may build up, over more of it less and less.
 SHORTEST = 3e-4
@@ -128,12 +129,11 @@ def _softened(evidence: Evidence, model: Directions) -> Directions:
 
 
 def _rises(evidence: Evidence, model: Directions, joint: int) -> bool:
-    """Return whether a joint's Coulomb friction has no peak in a model's fit but a narrow one."""
+    """Return whether a joint's blend of signs has no peak in a model's fit but a narrow one."""
     space, theta = evidence.setup.space, parameters(evidence, model)
-    parts = [(theta[space.own_index(joint, k)], c) for k, c in enumerate(space.own) if c.term == "coulomb"]
-    speeds = np.geomspace(NARROW, 1.0, 50)  # rad/s
-    friction = np.sum([size * sign(speeds, c.value["width"]) for size, c in parts], axis=0)
-    return float(friction.max()) <= (1 + PEAK) * float(friction[-1])
+    level, blend = float(evidence.setup.friction[joint, 0]), ("coulomb",)
+    narrow, wide = (peak(space, theta, joint, blend, slowest) for slowest in (0.0, NARROW))
+    return narrow <= MUCH * level and wide <= PEAK * level
 
 
 def _rich(evidence: Evidence) -> Directions:

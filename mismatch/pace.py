@@ -9,8 +9,8 @@ from .evidence import Evidence, evenly_weighed
 from .naming import Scored, reweighed, scored
 from .selection import Directions
 
-#: Effects whose columns are made of accelerations' changes.
-DERIVED = ("joint_elasticity", "time_delay")
+#: Effects whose columns are made of accelerations, or of their changes.
+DERIVED = ("joint_elasticity", "time_delay", "rotor_inertia")
 #: Sizes may differ by this share, or by so many standard deviations of the slow one.
 _APART, _SURE = 0.3, 3.0
 

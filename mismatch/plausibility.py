@@ -3,7 +3,9 @@
 from .candidates import Candidate
 from .evidence import Evidence
 from .flexible import names
-from .naming import Scored, scored
+from .naming import Scored, chosen, scored
+from .peaks import peak
+from .refit import parameters
 from .selection import Directions
 
 #: Friction over the angle is a wave unless any curve explains so much more than it.
@@ -29,6 +31,8 @@ _LEAST_GAP = 0.3
 SOFTEST = 1e3
 #: s; current and motion may be less than this apart without anything being wrong: a cycle and a half.
 SYNCHRONOUS = 0.003
+#: Of its size, friction as a whole has to rise by this share above where it ends: else it only starts gently.
+_PEAK = 0.3
 #: A rotor is there: it may have lost this part of its published inertia.
 LOST = 0.9
 
@@ -85,6 +89,20 @@ def misshapen(weighed: Evidence, model: Directions, test: Scored) -> tuple[str, 
         what = {"q sign": "a curve over the angle that is no wave", "drive sign": "the torque's own sign"}
         return f"{what[over]} explains {lead:.0f} nats more", curve
     return "", ()
+
+
+def peakless(weighed: Evidence, model: Directions, test: Scored) -> str:
+    """Return in words that friction beside Stribeck's has no peak, but only starts as gently; or nothing.
+
+    With a reference it is a change, and may be one of how gently.
+    """
+    c = test.candidate
+    if c.effect != "stribeck" or c.joint is None or weighed.has_reference:
+        return ""
+    theta, size = parameters(weighed, chosen(model, weighed, c)), float(test.size[0])
+    if (rise := peak(weighed.setup.space, theta, c.joint)) >= _PEAK * size:
+        return ""
+    return f"friction rises by {100 * rise / size:.0f} % of it: it only starts gently"
 
 
 def of_all_joints(weighed: Evidence, model: Directions, test: Scored) -> str:
