@@ -24,7 +24,7 @@ from .selection import Directions, Eliminated, eliminate, log_evidence
 Array = NDArray[np.float64]
 
 #: Base parameters of the published model may be off by this share of their wide prior before it is a finding.
-TIGHT = 0.007
+TIGHT = 0.03
 #: Around standstill every gear differs from Coulomb's law by a few percent of it, in one shape or another,
 EVERY_GEAR = {"stribeck": 0.01, "presliding": 0.01, "lag": 0.03}
 #: and by much of it where it is narrower than this (Stribeck's speed, rad/s).
