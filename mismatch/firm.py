@@ -25,18 +25,15 @@ def beside_firm(weighed: Evidence, model: Directions, test: Scored) -> Scored:
 
     With a reference priors are the reference's, and all is as it is.
     """
-    little = test.total < _LITTLE * test.evidence
-    if weighed.has_reference or test.evidence < 2 * EVIDENCE or not little:
+    if weighed.has_reference or test.evidence < 2 * EVIDENCE or test.total >= _LITTLE * test.evidence:
         return test
     return replace(test, gain=scored(weighed, _firm(weighed, model), [test.candidate])[0].gain)
 
 
 def _firm(evidence: Evidence, model: Directions) -> Directions:
-    """Return a model in which what is free by little is held."""
-    wide = np.concatenate([evidence.base_std, evidence.own_std.ravel()])
-    single = np.flatnonzero(model.shared & (model.vectors.getnnz(axis=0) == 1))
-    rows = model.vectors.tocsc()[:, single].tocoo().row
-    std = model.std.copy()
-    narrow = single[(rows < len(wide)) & (std[single] < _NARROW * wide[np.minimum(rows, len(wide) - 1)])]
-    std[narrow] *= _HELD
-    return replace(model, std=std)
+    """Return a model in which what is free by little is held; it shares single parameters."""
+    columns = np.concatenate([evidence.base_std, evidence.own_std.ravel()])
+    wide = np.zeros(evidence.setup.space.size)  # common columns are never fitted by little
+    wide[: len(columns)] = columns
+    narrow = model.shared & (model.std < _NARROW * (model.vectors.T @ wide))
+    return replace(model, std=np.where(narrow, _HELD * model.std, model.std))

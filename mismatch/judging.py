@@ -14,7 +14,7 @@ from .coverage import SLOW
 from .evidence import Evidence
 from .firm import beside_firm
 from .local import at_one_place
-from .naming import Scored, chosen, nuisance, ranked, scored, steadiness, tested
+from .naming import APART, Scored, chosen, nuisance, ranked, scored, steadiness, tested
 from .pace import paceless
 from .plausibility import (
     NEAR_ZERO,
@@ -31,8 +31,8 @@ from .share import share_of
 
 Key = tuple[str, int | None]
 
-#: A rival is told apart by this many nats, and by a steady lead where that is a small share of the evidence.
-APART, CLOSE = 5.0, 0.05
+#: A rival is told apart by APART, and by a steady lead where that is less than this share of the evidence.
+CLOSE = 0.05
 #: A rival explains at least this share of what the best does.
 RELATED = 0.2
 #: Less than this share of a found effect's evidence, on its joints, is what that effect's own form leaves.

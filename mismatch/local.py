@@ -55,7 +55,7 @@ def gains(weighed: Evidence, model: Directions, test: Scored, j: int) -> Iterato
 
 
 def concentrated(q: Array, gain: Array, acts: Array) -> str:
-    """Return in words that gains (n,) come from one place of the angle q (n,), rad, if any, or nothing.
+    """Return in words that gains (n,) are none, or come from one place of the angle q (n,), rad; or nothing.
 
     acts (n,): half the squared change of the fit over the noise's variance. Where a hypothesis holds, it is
     the gain's mean, and half the gain's variance.

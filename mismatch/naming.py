@@ -37,8 +37,8 @@ SHORTEST = 3e-4
 #: Of a column's prior width, for columns that only describe the reference's own imperfections.
 SHARES = (0.003, 0.01, 0.03, 0.1)
 BARE = 1e-4
-
-
+#: Nats by which one of two hypotheses leads that are told apart: odds of e^5 = 150.
+APART = 5.0
 #: Nats of a swing: drives and stick-slip swing as well, at some frequency; below it a soft gear may only lag.
 CLEAR = 100.0
 
@@ -132,8 +132,8 @@ def _rises(evidence: Evidence, model: Directions, joint: int) -> bool:
     """Return whether a joint's blend of signs has no peak in a model's fit but a narrow one."""
     space, theta = evidence.setup.space, parameters(evidence, model)
     level, blend = float(evidence.setup.friction[joint, 0]), ("coulomb",)
-    narrow, wide = (peak(space, theta, joint, blend, slowest) for slowest in (0.0, NARROW))
-    return narrow <= MUCH * level and wide <= PEAK * level
+    wide = peak(space, theta, joint, blend, NARROW)
+    return peak(space, theta, joint, blend) <= MUCH * level and wide <= PEAK * level
 
 
 def _rich(evidence: Evidence) -> Directions:

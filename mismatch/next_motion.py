@@ -20,6 +20,7 @@ from .candidates import Candidate, of_key
 from .evidence import Evidence
 from .experiment_script import script_of
 from .experiments import Experiment, library
+from .naming import APART
 from .rehearsal import Lean, information, lean, minutes_of
 from .result import NextMotion
 from .room import Room, room_of
@@ -28,8 +29,6 @@ from .selection import Directions, Eliminated, eliminate
 Array = NDArray[np.float64]
 Key = tuple[str, int | None]
 
-#: Nats that settle it: odds of e^5 = 150. What a whole experiment must promise, or it is not proposed.
-APART = 5.0
 #: Joints that are exercised at most.
 _JOINTS = 2
 

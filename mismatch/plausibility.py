@@ -3,7 +3,7 @@
 from .candidates import Candidate
 from .evidence import Evidence
 from .flexible import names
-from .naming import Scored, chosen, scored
+from .naming import APART, Scored, chosen, scored
 from .peaks import peak
 from .refit import parameters
 from .selection import Directions
@@ -12,8 +12,6 @@ from .selection import Directions
 NO_WAVE = 0.5
 #: What turns with the drive's torque is an amplifier's where that sign explains so much more.
 DRIVEN = 0.1
-#: Nats by which a curve that is no physics leads, as any rival does, to be believed in its place.
-_LEADS = 5.0
 #: What friction does around zero speed alone.
 NEAR_ZERO = ("stribeck", "presliding_hysteresis", "velocity_lag")
 #: What builds up with travel or late is much of the Coulomb level, or it is something else; over less travel
@@ -82,7 +80,7 @@ def misshapen(weighed: Evidence, model: Directions, test: Scored) -> tuple[str, 
     over, part = "drive sign", DRIVEN
     if c.effect == "position_dependent_friction":
         over, part = "q sign", NO_WAVE
-    least = max(_LEADS, part * test.evidence)
+    least = max(APART, part * test.evidence)
     curve = tuple(weighed.found.curve[c.joint][k] for k, (name, _) in enumerate(names()) if name == over)
     other = scored(weighed, model, [Candidate("unknown", c.joint, curve)])[0]
     if (lead := other.evidence - test.evidence) > least:

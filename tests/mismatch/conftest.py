@@ -86,13 +86,24 @@ def along():
 
 
 @pytest.fixture(scope="session")
-def healthy(arm, along) -> Evidence:
+def moved(arm, along):
+    """(friction of qd (T, 3) in Nm, noise in Nm, seed) -> evidence of 60 s of the published arm."""
+
+    def of(friction, noise: float, seed: int) -> Evidence:
+        time, rng = np.arange(0.0, 60.0, 0.008), np.random.default_rng(seed)
+        q, qd, qdd = along(time)
+        torque = (
+            arm.observer.inverse_dynamics(q, qd, qdd) + friction(qd) + noise * rng.standard_normal(q.shape)
+        )
+        return gather([arm.recording(time, torque)], [True], arm.model, arm.robot)
+
+    return of
+
+
+@pytest.fixture(scope="session")
+def healthy(moved) -> Evidence:
     """60 s of the published arm with Coulomb and viscous friction, and noise."""
-    time, rng = np.arange(0.0, 60.0, 0.008), np.random.default_rng(5)
-    q, qd, qdd = along(time)
-    friction = np.array([5.0, 6.0, 4.0]) * np.tanh(qd / 1e-3) + 2.0 * qd
-    torque = arm.observer.inverse_dynamics(q, qd, qdd) + friction + 0.3 * rng.standard_normal(q.shape)
-    return gather([arm.recording(time, torque)], [True], arm.model, arm.robot)
+    return moved(lambda qd: np.array([5.0, 6.0, 4.0]) * np.tanh(qd / 1e-3) + 2.0 * qd, 0.3, seed=5)
 
 
 #: Changed robots: what differs from the one that the reference recordings are of.

@@ -7,8 +7,8 @@ import pytest
 
 from residuum.mismatch.evidence import gather
 from residuum.mismatch.experiments import Experiment, Step, library, path
-from residuum.mismatch.naming import nuisance, ranked
-from residuum.mismatch.next_motion import APART, next_motion, promises
+from residuum.mismatch.naming import APART, nuisance, ranked
+from residuum.mismatch.next_motion import next_motion, promises
 from residuum.mismatch.physics import physics_of
 from residuum.mismatch.rehearsal import RATE, minutes_of, recording_of, rounds_of, trajectory
 from residuum.mismatch.room import TOP_SPEED, heights, room_of

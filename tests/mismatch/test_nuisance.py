@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from residuum.mismatch.evidence import Evidence, gather
+from residuum.mismatch.evidence import Evidence
 from residuum.mismatch.judging import judge
 from residuum.mismatch.naming import MUCH, NARROW, PEAK, nuisance
 from residuum.mismatch.peaks import peak
@@ -11,15 +11,11 @@ from residuum.mismatch.refit import parameters
 
 
 @pytest.fixture(scope="module")
-def recorded(arm, along):
-    """Friction of qd (T, 3) -> evidence without a reference."""
+def recorded(moved):
+    """Dry friction of qd (T, 3) in Nm -> evidence without a reference."""
 
-    def of(friction) -> Evidence:
-        time, rng = np.arange(0.0, 60.0, 0.008), np.random.default_rng(6)
-        q, qd, qdd = along(time)
-        torque = arm.observer.inverse_dynamics(q, qd, qdd) + friction(qd) + 2.0 * qd
-        noise = 0.15 * rng.standard_normal(q.shape)
-        return gather([arm.recording(time, torque + noise)], [True], arm.model, arm.robot)
+    def of(dry) -> Evidence:
+        return moved(lambda qd: dry(qd) + 2.0 * qd, 0.15, seed=6)
 
     return of
 
