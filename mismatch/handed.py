@@ -13,6 +13,7 @@ from .acceptance import EVIDENCE
 from .candidates import Candidate
 from .evidence import Evidence, evenly_weighed
 from .judging import Accepted
+from .masses import INERTIAL
 from .naming import TIGHT, reweighed, shared
 from .refit import parameters
 from .selection import Directions, log_evidence
@@ -25,8 +26,7 @@ SHAPES = (
     "presliding",
 )  # fmt: skip
 _MOST = 3
-_INERTIAL = ("payload", "link_inertial", "rotor_inertia", "base_free")
-_AS_MASSES = (*_INERTIAL, "base_tilt", "encoder_offset", "frozen_joint_coupling", "dropped_coupling")
+_AS_MASSES = (*INERTIAL, "base_tilt", "encoder_offset", "frozen_joint_coupling", "dropped_coupling")
 _HELD = 1e-4
 
 
@@ -38,7 +38,7 @@ def handed(
     tight: of their wide prior, what base parameters have where no finding frees them.
     """
     space, found = evidence.setup.space, evidence.found
-    free = evidence.has_reference or any(a.score.candidate.effect in _INERTIAL for a in accepted)
+    free = evidence.has_reference or any(a.score.candidate.effect in INERTIAL for a in accepted)
     keep = list(range(len(space.base)))
     std = list(evidence.base_std * (1.0 if free else tight))
     for j in range(space.dof):
@@ -47,7 +47,7 @@ def handed(
                 keep.append(space.own_index(j, k))
                 std.append(float(evidence.own_std[j, k]))
     model = shared(space, keep, std) + _of_both(evidence, shapes)
-    inertial = () if evidence.has_reference else _INERTIAL  # there the base parameters themselves are free
+    inertial = () if evidence.has_reference else INERTIAL  # there the base parameters themselves are free
     named = [
         c for a in accepted if a.score.candidate.effect not in inertial for c in a.score.candidate.columns
     ]

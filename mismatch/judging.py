@@ -14,6 +14,7 @@ from .coverage import SLOW
 from .evidence import Evidence
 from .firm import beside_firm
 from .local import at_one_place
+from .masses import MASSES_OFF, all_off
 from .naming import APART, Scored, chosen, nuisance, ranked, scored, steadiness, tested
 from .pace import paceless
 from .plausibility import (
@@ -113,13 +114,14 @@ class Judged:
 
 def judge(
     evidence: Evidence, progress: Callable[[str], None] = lambda _: None, known: Judged | None = None,
-    most: int = MOST,
+    most: int = MOST, masses: tuple[float, ...] = MASSES_OFF,
 ) -> Judged:  # fmt: skip
     """Add one hypothesis after the other while it passes every test.
 
-    known: what stands already (not judged again); most: findings at most.
+    known: what stands already (not judged again); most: findings at most; masses: how far all masses may be
+    off without a reference, by the next where the recordings ask for it.
     """
-    model = known.model if known else nuisance(evidence)
+    model = known.model if known else nuisance(evidence, masses[0])
     skip = ("base_free",) if evidence.has_reference else UNSEEN
     if max(r.step for r in evidence.runs) > 2.001 / SLOW:  # rows are made at half the rate (track.py)
         skip = (*skip, *FAST)
@@ -131,7 +133,10 @@ def judge(
         fitted = evidence.found.directions.take(bent) + model
         every = ranked(evidence, fitted, skip)
         order = [s for s in every if s.candidate.key not in barred]
-        if not order or order[0].evidence < EVIDENCE:
+        told = bool(order) and order[0].evidence >= EVIDENCE
+        if not known and all_off(evidence, fitted, order[0] if told else None, masses):
+            return judge(evidence, progress, None, most, masses[1:])
+        if not told:
             break
         best = likelier(bodies_first(order, partial(_best_beside, evidence, fitted)))
         barred.add(best.candidate.key)

@@ -82,13 +82,13 @@ def steadiness(gain: Array) -> float:
     return float(np.mean(gain) / max(spread, 1e-12))
 
 
-def nuisance(evidence: Evidence) -> Directions:
-    """Return what is fitted whatever is found."""
+def nuisance(evidence: Evidence, masses: float = TIGHT) -> Directions:
+    """Return what is fitted whatever is found; masses: the share of their wide prior without a reference."""
     space = evidence.setup.space
     if evidence.has_reference:
         return _rich(evidence)
     keep = list(range(len(space.base)))
-    std = list(TIGHT * evidence.base_std)
+    std = list(masses * evidence.base_std)
     for j in range(space.dof):
         for k, c in enumerate(space.own):
             level = max(float(evidence.setup.friction[j, 0]), 1e-3)

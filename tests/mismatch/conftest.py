@@ -68,6 +68,13 @@ class Arm:
             joint_temperatures=np.full((len(time), 3), 35.0),
         )  # fmt: skip
 
+    def scaled(self, field: str, times) -> "Arm":
+        """The arm of whose six joints a number is so many times as large."""
+        joints = zip(self.robot.joint, times, strict=True)
+        other = tuple(j.model_copy(update={field: x * getattr(j, field)}) for j, x in joints)
+        robot = self.robot.model_copy(update={"joint": other})
+        return Arm(robot, nominal_model(robot, "", 3))
+
     def column(self, rows, name: str, row: int):
         """A common column (n,) in a joint's rows."""
         space = self.setup.space
@@ -87,14 +94,13 @@ def along():
 
 @pytest.fixture(scope="session")
 def moved(arm, along):
-    """(friction of qd (T, 3) in Nm, noise in Nm, seed) -> evidence of 60 s of the published arm."""
+    """(friction of qd (T, 3) in Nm, noise in Nm, seed, the arm that moves) -> evidence of 60 s of it."""
 
-    def of(friction, noise: float, seed: int) -> Evidence:
+    def of(friction, noise: float, seed: int, body: Arm = arm) -> Evidence:
         time, rng = np.arange(0.0, 60.0, 0.008), np.random.default_rng(seed)
         q, qd, qdd = along(time)
-        torque = (
-            arm.observer.inverse_dynamics(q, qd, qdd) + friction(qd) + noise * rng.standard_normal(q.shape)
-        )
+        torque = body.observer.inverse_dynamics(q, qd, qdd) + friction(qd)
+        torque = torque + noise * rng.standard_normal(q.shape)
         return gather([arm.recording(time, torque)], [True], arm.model, arm.robot)
 
     return of
