@@ -24,6 +24,7 @@ from .handed import handed, shapes_of, unnamed
 from .judging import Judged, judge
 from .lacking import full_of
 from .limits import with_thresholds
+from .masses import concealed
 from .naming import reweighed
 from .next_motion import next_motion
 from .parts import Parts
@@ -168,7 +169,7 @@ def _explained(
         model = with_thresholds(model, [recordings[r] for r in which], inflate, touched)
     parts = Parts(
         task.robot, nominal, sources, evidence, judged, sharp, found, runs, left, t.push, strange, proof,
-        before, after, rate, tuple(places), names, lacks, model,
+        before, after, rate, tuple(places), names, (*lacks, *concealed(judged.masses)), model,
         _proposal(task, weighed, judged, progress), t.load, lighter,
     )  # fmt: skip
     return compose(parts)

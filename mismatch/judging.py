@@ -105,11 +105,15 @@ class Accepted:
 
 @dataclass(frozen=True)
 class Judged:
-    """Findings in the order in which they were found, the last model, and what was tried and refused."""
+    """Findings in the order in which they were found, the last model, and what was tried and refused.
+
+    masses: share of their wide prior by which masses as a whole are off, without a reference.
+    """
 
     accepted: tuple[Accepted, ...]
     model: Directions
     refused: tuple[tuple[Scored, str], ...]
+    masses: float = MASSES_OFF[0]
 
 
 def judge(
@@ -171,7 +175,7 @@ def judge(
         alike, rivals = _rivals(evidence, fitted, best, [o for o in every if o.candidate.key not in hollow])
         accepted.append(Accepted(test, alike, rivals, part.explained))
         model = chosen(model, evidence, best.candidate)
-    return Judged(tuple(accepted), model, tuple(refused))
+    return Judged(tuple(accepted), model, tuple(refused), masses[0])
 
 
 def bodies_first(order: list[Scored], beside: Callable[[Candidate, list[Candidate]], float]) -> list[Scored]:

@@ -7,6 +7,7 @@ hypothesis' rival: where it explains more, naming starts anew with it.
 
 import numpy as np
 
+from ..identify.solve import PRIOR_SHARE
 from .evidence import Evidence
 from .naming import APART, TIGHT, Scored, shared
 from .selection import Directions, log_evidence
@@ -15,6 +16,15 @@ from .selection import Directions, log_evidence
 MASSES_OFF = (0.007, TIGHT, 0.1)
 #: Names that change inertial parameters: told apart from all of these being off, as from any rival.
 INERTIAL = ("payload", "link_inertial", "rotor_inertia", "base_free")
+
+
+def concealed(share: float) -> tuple[str, ...]:
+    """Say what recordings of a robot cannot show whose masses are off by such a share, if they are."""
+    if share <= MASSES_OFF[0]:
+        return ()
+    part = f"{100 * PRIOR_SHARE * share:.2g} % of a base parameter"
+    why = "masses as a whole are not as published (the refined model has them)"
+    return (f"one body's change by less than {part}: {why}",)
 
 
 def all_off(evidence: Evidence, model: Directions, best: Scored | None, shares: tuple[float, ...]) -> bool:
