@@ -77,10 +77,10 @@ def taken_off(evidence: Evidence, known: Judged) -> tuple[Evidence, Judged]:
     runs = [
         replace(r, torque=r.torque - x) for r, x in zip(evidence.runs, torques(evidence, vector), strict=True)
     ]
-    model = nuisance(evidence)
+    model = nuisance(evidence, known.masses)
     for a in stays:
         model = chosen(model, evidence, a.score.candidate)
-    return renewed(evidence, runs), Judged(tuple(stays), model, ())
+    return renewed(evidence, runs), Judged(tuple(stays), model, (), known.masses)
 
 
 def alone(evidence: Evidence, known: Judged) -> tuple[Evidence, Judged]:

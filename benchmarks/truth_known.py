@@ -50,12 +50,10 @@ def true_ones(evidence: Evidence, effects: list[dict[str, Any]]) -> Iterator[lis
         yield [c for c in evidence.found.each if c.effect == e["effect"] and c.joint in on_one]
 
 
-def with_truth(evidence: Evidence, effects: list[dict[str, Any]]) -> Directions | None:
-    """Return the model of the true effects, or None where one of them has no column."""
-    model = nuisance(evidence)
+def with_truth(evidence: Evidence, effects: list[dict[str, Any]], masses: float) -> Directions:
+    """Return the model of true effects that all have columns; masses: as `nuisance` takes them."""
+    model = nuisance(evidence, masses)
     for some in true_ones(evidence, effects):
-        if not some:
-            return None
         model = chosen(
             model, evidence, max(scored(evidence, model, some), key=lambda s: s.evidence).candidate
         )
@@ -78,9 +76,10 @@ def run(trial: Path, least: float) -> None:
         if truth["kind"] != "catalogue" or max(e["size"] for e in truth["effects"]) < least:
             continue
         evidence = gathered(folder)
-        if (known := with_truth(evidence, truth["effects"])) is None:
+        if not all(true_ones(evidence, truth["effects"])):
             continue
         judged = judge(evidence)
+        known = with_truth(evidence, truth["effects"], judged.masses)
         weighed = reweighed(evidence, known)
         found, best = errors(weighed, judged.model), errors(weighed, known)
         j = truth["effects"][0]["joint"] - 1

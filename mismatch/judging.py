@@ -125,6 +125,7 @@ def judge(
     known: what stands already (not judged again); most: findings at most; masses: how far all masses may be
     off without a reference, by the next where the recordings ask for it.
     """
+    masses = (known.masses,) if known else masses
     model = known.model if known else nuisance(evidence, masses[0])
     skip = ("base_free",) if evidence.has_reference else UNSEEN
     if max(r.step for r in evidence.runs) > 2.001 / SLOW:  # rows are made at half the rate (track.py)
@@ -138,7 +139,7 @@ def judge(
         every = ranked(evidence, fitted, skip)
         order = [s for s in every if s.candidate.key not in barred]
         told = bool(order) and order[0].evidence >= EVIDENCE
-        if not known and all_off(evidence, fitted, order[0] if told else None, masses):
+        if all_off(evidence, fitted, order[0] if told else None, masses):
             return judge(evidence, progress, None, most, masses[1:])
         if not told:
             break
