@@ -169,7 +169,7 @@ def _explained(
         model = with_thresholds(model, [recordings[r] for r in which], inflate, touched)
     parts = Parts(
         task.robot, nominal, sources, evidence, judged, sharp, found, runs, left, t.push, strange, proof,
-        before, after, rate, tuple(places), names, (*lacks, *concealed(judged.masses)), model,
+        before, after, rate, tuple(places), names, (*lacks, *concealed(judged.masses_off)), model,
         _proposal(task, weighed, judged, progress), t.load, lighter,
     )  # fmt: skip
     return compose(parts)

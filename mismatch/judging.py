@@ -115,6 +115,11 @@ class Judged:
     refused: tuple[tuple[Scored, str], ...]
     masses: float = MASSES_OFF[0]
 
+    @property
+    def masses_off(self) -> float:
+        """The share by which masses are off after all that was found: 1 where they were freed."""
+        return 1.0 if any(a.score.candidate.effect == "base_free" for a in self.accepted) else self.masses
+
 
 def judge(
     evidence: Evidence, progress: Callable[[str], None] = lambda _: None, known: Judged | None = None,

@@ -19,12 +19,11 @@ INERTIAL = ("payload", "link_inertial", "rotor_inertia", "base_free")
 
 
 def concealed(share: float) -> tuple[str, ...]:
-    """Say what recordings of a robot cannot show whose masses are off by such a share, if they are."""
+    """Say what recordings of a robot cannot show whose masses are off by such a share (1: free), if any."""
     if share <= MASSES_OFF[0]:
         return ()
-    part = f"{100 * PRIOR_SHARE * share:.2g} % of a base parameter"
-    why = "masses as a whole are not as published (the refined model has them)"
-    return (f"one body's change by less than {part}: {why}",)
+    least = f" by less than {100 * PRIOR_SHARE * share:.2g} % of a base parameter" if share < 1 else ""
+    return (f"one body's change{least}: masses as a whole are not as published (the refined model has them)",)
 
 
 def all_off(evidence: Evidence, model: Directions, best: Scored | None, shares: tuple[float, ...]) -> bool:

@@ -33,11 +33,17 @@ def test_masses_that_are_all_off_are_no_body(recorded) -> None:
     assert all_off(evidence, nuisance(evidence, MASSES_OFF[0]), None, MASSES_OFF)
     judged = judge(evidence)
     assert not [a for a in judged.accepted if a.is_finding]
-    assert "1.5 % of a base parameter" in concealed(judged.masses)[0]
+    assert "1.5 % of a base parameter" in concealed(judged.masses_off)[0]
 
 
 def test_published_masses_are_not_off(recorded) -> None:
     evidence = recorded("mass", (1.0,) * 6)
     assert not all_off(evidence, nuisance(evidence, MASSES_OFF[0]), None, MASSES_OFF)
     judged = judge(evidence)
-    assert judged.accepted == () == concealed(judged.masses)
+    assert judged.accepted == () == concealed(judged.masses_off)
+
+
+def test_what_masses_that_are_off_conceal_is_said() -> None:
+    (some,), (free,) = concealed(0.1), concealed(1.0)
+    assert "by less than 5 % of a base parameter" in some
+    assert "%" not in free
