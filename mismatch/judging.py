@@ -31,6 +31,8 @@ from .selection import Directions
 from .share import share_of
 
 Key = tuple[str, int | None]
+#: What was refused beside the first model: evidence (nats) when it was tried, its test, and why.
+Refusals = dict[Key, tuple[float, Scored, str]]
 
 #: A rival is told apart by APART, and by a steady lead where that is less than this share of the evidence.
 CLOSE = 0.05
@@ -123,12 +125,13 @@ class Judged:
 
 def judge(
     evidence: Evidence, progress: Callable[[str], None] = lambda _: None, known: Judged | None = None,
-    most: int = MOST, masses: tuple[float, ...] = MASSES_OFF,
+    most: int = MOST, masses: tuple[float, ...] = MASSES_OFF, before: Refusals | None = None,
 ) -> Judged:  # fmt: skip
     """Add one hypothesis after the other while it passes every test.
 
     known: what stands already (not judged again); most: findings at most; masses: how far all masses may be
-    off without a reference, by the next where the recordings ask for it.
+    off without a reference, by the next where the recordings ask for it; before: what was refused with less,
+    which stands where being off by more changes its evidence by less than APART.
     """
     masses = (known.masses,) if known else masses
     model = known.model if known else nuisance(evidence, masses[0])
@@ -137,15 +140,19 @@ def judge(
         skip = (*skip, *FAST)
     accepted, refused = list[Accepted](), list[tuple[Scored, str]]()
     barred, hollow, bent = set[Key](), set[Key](), list[int]()
-    tries = 0
+    tries, early = 0, Refusals()
     while sum(a.is_finding for a in accepted) < most and tries < TRIES:
         progress(f"hypotheses, round {len(accepted) + 1}")
         fitted = evidence.found.directions.take(bent) + model
         every = ranked(evidence, fitted, skip)
+        if before:
+            early, before = unmoved(before, every), None
+            barred |= early.keys()
+            refused += [(test, why) for _, test, why in early.values()]
         order = [s for s in every if s.candidate.key not in barred]
         told = bool(order) and order[0].evidence >= EVIDENCE
         if all_off(evidence, fitted, order[0] if told else None, masses):
-            return judge(evidence, progress, None, most, masses[1:])
+            return judge(evidence, progress, None, most, masses[1:], early)
         if not told:
             break
         best = likelier(bodies_first(order, partial(_best_beside, evidence, fitted)))
@@ -168,6 +175,8 @@ def judge(
             or peakless(weighed, fitted, test)
         )
         tries += 1
+        if why and not (accepted or bent):
+            early[best.candidate.key] = best.evidence, test, why
         # what is there without being a finding is fitted, or others would explain it; a curve only here,
         # since what the model leaves of it is still to be called unknown
         if not why:
@@ -182,6 +191,12 @@ def judge(
         accepted.append(Accepted(test, alike, rivals, part.explained))
         model = chosen(model, evidence, best.candidate)
     return Judged(tuple(accepted), model, tuple(refused), masses[0])
+
+
+def unmoved(before: Refusals, every: Sequence[Scored]) -> Refusals:
+    """Return the refusals of hypotheses whose evidence is now the same to less than APART."""
+    now = {s.candidate.key: s.evidence for s in every}
+    return {k: v for k, v in before.items() if abs(now.get(k, -np.inf) - v[0]) < APART}
 
 
 def bodies_first(order: list[Scored], beside: Callable[[Candidate, list[Candidate]], float]) -> list[Scored]:

@@ -8,8 +8,8 @@ import pytest
 
 from residuum.mismatch.acceptance import EVIDENCE, LARGE, SHARE, objection
 from residuum.mismatch.candidates import Candidate
-from residuum.mismatch.judging import Accepted, bodies_first, likelier, shadow, told_apart
-from residuum.mismatch.naming import Scored
+from residuum.mismatch.judging import Accepted, bodies_first, likelier, shadow, told_apart, unmoved
+from residuum.mismatch.naming import APART, Scored
 from residuum.mismatch.plausibility import SYNCHRONOUS, everyones, implausible
 from residuum.mismatch.share import Share
 
@@ -140,6 +140,13 @@ def test_around_zero_speed_names_are_known_to_less() -> None:
     delay = Candidate("time_delay", 1, (3,), (("around", 0.01),))
     assert "%" in shadow(scored([9, 11], evidence=20.0, candidate=delay), first, 6)
     assert shadow(scored([9, 11], evidence=20.0, candidate=drag), first, 6) == ""
+
+
+def test_a_refusal_stands_where_looser_masses_change_its_evidence_by_less_than_tells_names_apart() -> None:
+    same, other, gone = (scored([9, 11], candidate=Candidate("stribeck", j, (j,))) for j in range(3))
+    before = {s.candidate.key: (60.0, s, "why") for s in (same, other, gone)}
+    now = [replace(same, evidence=60.0 + 0.9 * APART), replace(other, evidence=60.0 - 1.1 * APART)]
+    assert unmoved(before, now).keys() == {same.candidate.key}
 
 
 def test_what_friction_rose_by_builds_up_over_a_short_travel_as_all_of_it_does() -> None:
