@@ -34,6 +34,8 @@ from .physics import Physics
 from .selection import Directions
 
 Array = NDArray[np.float64]
+#: A hypothesis' effect and joint (0-based; None: all).
+Key = tuple[str, int | None]
 
 
 #: Coefficients of what is there as a whole add up to one, or to this (damping and the arm's other joints take
@@ -65,7 +67,7 @@ class Candidate:
         return not (self.positive and size[0] < 0)
 
     @property
-    def key(self) -> tuple[str, int | None]:
+    def key(self) -> Key:
         """What it is called, whatever its nonlinear value."""
         return self.effect, self.joint
 
@@ -232,6 +234,6 @@ def _inertial(
     each.append(Candidate("base_free", None, tuple(every)))
 
 
-def of_key(all_of: Sequence[Candidate], key: tuple[str, int | None]) -> list[Candidate]:
+def of_key(all_of: Sequence[Candidate], key: Key) -> list[Candidate]:
     """Return the hypotheses of one name on one joint."""
     return [c for c in all_of if c.key == key]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from .acceptance import EVIDENCE
 from .candidates import Candidate
 from .evidence import Evidence, evenly_weighed
-from .judging import Accepted
+from .judging import RIGID, Accepted
 from .masses import INERTIAL
 from .naming import TIGHT, reweighed, shared
 from .refit import parameters
@@ -26,7 +26,7 @@ SHAPES = (
     "presliding",
 )  # fmt: skip
 _MOST = 3
-_AS_MASSES = (*INERTIAL, "base_tilt", "encoder_offset", "frozen_joint_coupling", "dropped_coupling")
+_AS_MASSES = (*RIGID, "base_tilt", "encoder_offset")
 _HELD = 1e-4
 
 

@@ -9,12 +9,12 @@ import numpy as np
 from . import yardstick
 from .acceptance import EVIDENCE, STEADY, objection
 from .bodies import bodiless
-from .candidates import Candidate
+from .candidates import Candidate, Key
 from .coverage import SLOW
 from .evidence import Evidence
 from .firm import beside_firm
 from .local import at_one_place
-from .masses import MASSES_OFF, all_off
+from .masses import BODIES, INERTIAL, MASSES_OFF, Refusals, all_off, unmoved
 from .naming import APART, Scored, chosen, nuisance, ranked, scored, steadiness, tested
 from .pace import paceless
 from .plausibility import (
@@ -29,10 +29,6 @@ from .plausibility import (
 )  # fmt: skip
 from .selection import Directions
 from .share import share_of
-
-Key = tuple[str, int | None]
-#: What was refused beside the first model: evidence (nats) when it was tried, its test, and why.
-Refusals = dict[Key, tuple[float, Scored, str]]
 
 #: A rival is told apart by APART, and by a steady lead where that is less than this share of the evidence.
 CLOSE = 0.05
@@ -55,15 +51,13 @@ BY_POSE, _TURNED = (
 #: Unless a jackknife cannot shake its size by 1 %: what a form leaves varies with the motion.
 OWN = 100.0
 #: The rigid body's form is exact: what it leaves is time and gains that are off by a few percent, squared.
-RIGID = (
-    "payload", "link_inertial", "rotor_inertia", "base_free", "frozen_joint_coupling", "dropped_coupling",
-)  # fmt: skip
+RIGID = (*INERTIAL, "frozen_joint_coupling", "dropped_coupling")
 RIGID_SHADOW = 0.01
 #: Hz; up to it a delay d is sought. Its column is a slope, and leaves d^2 / 2 of the torque's second one.
 _FASTEST = 4.0
 MASSES = ("payload", "link_inertial", "base_free")
 #: A body, or two of them, that explain this share of what all base parameters together do have the name.
-BODIES, ALL_OF_IT = ("payload", "link_inertial", "rotor_inertia"), 0.9
+ALL_OF_IT = 0.9
 #: Bodies that are tried as the first of two.
 _BODIES = 3
 #: Names that come before one which they cannot be told apart from.
@@ -191,12 +185,6 @@ def judge(
         accepted.append(Accepted(test, alike, rivals, part.explained))
         model = chosen(model, evidence, best.candidate)
     return Judged(tuple(accepted), model, tuple(refused), masses[0])
-
-
-def unmoved(before: Refusals, every: Sequence[Scored]) -> Refusals:
-    """Return the refusals of hypotheses whose evidence is now the same to less than APART."""
-    now = {s.candidate.key: s.evidence for s in every}
-    return {k: v for k, v in before.items() if abs(now.get(k, -np.inf) - v[0]) < APART}
 
 
 def bodies_first(order: list[Scored], beside: Callable[[Candidate, list[Candidate]], float]) -> list[Scored]:

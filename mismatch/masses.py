@@ -5,9 +5,12 @@ percent, and any body would be named that makes up for most of it. That all are 
 hypothesis' rival: where it explains more, naming starts anew with it.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..identify.solve import PRIOR_SHARE
+from .candidates import Key
 from .evidence import Evidence
 from .naming import APART, TIGHT, Scored, shared
 from .selection import Directions, log_evidence
@@ -15,7 +18,10 @@ from .selection import Directions, log_evidence
 #: Shares of the wide prior of base parameters, one after the other.
 MASSES_OFF = (0.007, TIGHT, 0.1)
 #: Names that change inertial parameters: told apart from all of these being off, as from any rival.
-INERTIAL = ("payload", "link_inertial", "rotor_inertia", "base_free")
+BODIES = ("payload", "link_inertial", "rotor_inertia")
+INERTIAL = (*BODIES, "base_free")
+#: What was refused beside the first model: evidence (nats) when it was tried, its test, and why.
+Refusals = dict[Key, tuple[float, Scored, str]]
 
 
 def concealed(share: float) -> tuple[str, ...]:
@@ -39,3 +45,9 @@ def all_off(evidence: Evidence, model: Directions, best: Scored | None, shares: 
     if best is None:
         return found > APART
     return found > best.evidence - (APART if best.candidate.effect in INERTIAL else 0.0)
+
+
+def unmoved(before: Refusals, every: Sequence[Scored]) -> Refusals:
+    """Return the refusals of hypotheses whose evidence is the same to less than APART."""
+    now = {s.candidate.key: s.evidence for s in every}
+    return {k: v for k, v in before.items() if abs(now.get(k, -np.inf) - v[0]) < APART}

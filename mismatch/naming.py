@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from .candidates import Candidate
+from .candidates import Candidate, Key
 from .columns import BASELINE, BY_NAME, REPEAT, Column, Space
 from .evidence import Evidence, residual, weighed
 from .grams import Scales, evenly, scales_of
@@ -228,7 +228,7 @@ def _consistency(whole: Eliminated, out: Sequence[Eliminated], columns: Sequence
 
 def ranked(evidence: Evidence, model: Directions, skip: Sequence[str] = ()) -> list[Scored]:
     """Return every hypothesis at its best nonlinear value as an addition to a model, best first."""
-    best: dict[tuple[str, int | None], Scored] = {}
+    best: dict[Key, Scored] = {}
     for s in scored(evidence, model, [c for c in evidence.found.each if c.effect not in skip]):
         c = s.candidate
         clear = not c.whole or s.evidence >= CLEAR

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]
 
 from ..symbolic.effects import EFFECTS
-from .candidates import Candidate, of_key
+from .candidates import Candidate, Key, of_key
 from .evidence import Evidence
 from .experiment_script import script_of
 from .experiments import Experiment, library
@@ -27,7 +27,6 @@ from .room import Room, room_of
 from .selection import Directions, Eliminated, eliminate
 
 Array = NDArray[np.float64]
-Key = tuple[str, int | None]
 
 #: Joints that are exercised at most.
 _JOINTS = 2

@@ -8,7 +8,8 @@ import pytest
 
 from residuum.mismatch.acceptance import EVIDENCE, LARGE, SHARE, objection
 from residuum.mismatch.candidates import Candidate
-from residuum.mismatch.judging import Accepted, bodies_first, likelier, shadow, told_apart, unmoved
+from residuum.mismatch.judging import Accepted, bodies_first, likelier, shadow, told_apart
+from residuum.mismatch.masses import unmoved
 from residuum.mismatch.naming import APART, Scored
 from residuum.mismatch.plausibility import SYNCHRONOUS, everyones, implausible
 from residuum.mismatch.share import Share
