@@ -25,6 +25,7 @@ Array = NDArray[np.float64]
 #: The projection is left out when it would move the parameters by less than this many standard deviations.
 _NEGLIGIBLE = 1e-2
 #: Exact by interior points; where these fail on an ill-conditioned program, slower and coarser by splitting.
+#: Never warm: a warm one keeps the scaling of the program before, and fails on one that is scaled otherwise.
 _SOLVERS = ("CLARABEL", "SCS")
 #: Weight of the full set's own size: what no motion shows would else be free, and the program ill-posed.
 _SMALL = 1e-6
@@ -69,7 +70,7 @@ def project(
     root = np.linalg.cholesky(information * np.outer(scale, scale)).T
     program.root.value, program.start.value, program.scale.value = root, estimate, scale
     for solver in _SOLVERS:
-        program.problem.solve(solver=solver)
+        program.problem.solve(solver=solver, warm_start=False)
         if program.step.value is not None:
             break
     else:
@@ -98,7 +99,7 @@ def unlike_a_body(
     program.root.value, program.start.value = np.zeros((10, 10)), np.zeros(10)
     program.root.value[:k], program.start.value[:k] = root @ mapping / scale, root @ estimate / scale
     program.before.value, program.heaviest.value = before, heaviest
-    program.problem.solve(solver="CLARABEL")
+    program.problem.solve(solver="CLARABEL", warm_start=False)
     if program.change.value is None:
         raise RuntimeError("no body near the change was found")
     missed = program.root.value @ program.change.value - program.start.value
