@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from .grams import Scales, regime
 from .rows import Rows
 from .segments import stretches
+from .whitening import FREE, REST, ZERO
 
 Array = NDArray[np.float64]
 
@@ -49,9 +50,8 @@ def episodes(
     found, time, taken = list[Episode](), 0, 0
     for run, left in zip(which, residuals, strict=True):
         rows = runs[run]
-        scaled = _scaled(rows, left, scales, coulomb)
         for part in _joined(loudness(rows, left, scales, coulomb) > 1, rows.step):
-            found.append(_episode(run, part, rows, left, scaled))
+            found.append(episode(run, part, rows, left, scales, coulomb))
             taken += part.stop - part.start
         time += len(rows)
     return found if taken <= MOST * max(time, 1) else []
@@ -65,16 +65,27 @@ def loudness(rows: Rows, left: Array, scales: Scales, coulomb: Array) -> Array:
     spread = np.sqrt(np.minimum(scales.inflation, width) / width)
     loud = np.zeros(len(rows))
     for j in range(left.shape[1]):
-        mean = np.convolve(np.clip(scaled[:, j], -50, 50) * (kinds[:, j] != 1), kernel, "same")
+        mean = np.convolve(np.clip(scaled[:, j], -50, 50) * (kinds[:, j] != ZERO), kernel, "same")
         loud = np.maximum(loud, np.abs(mean) / (LEVEL * spread[j] + 0.3))
     return loud
 
 
 def _scaled(rows: Rows, left: Array, scales: Scales, coulomb: Array) -> Array:
-    """Return residuals (n, N) in units of their noise."""
-    sigma = scales.sigma.copy()
-    sigma[:, 2] = np.maximum(sigma[:, 2], HELD * coulomb)
-    return np.asarray(left / np.take_along_axis(sigma[None], regime(rows)[:, :, None], axis=2)[:, :, 0])
+    """Return residuals (n, N) in units of their noise, at rest what is beyond that which friction holds.
+
+    What friction holds is bounded, and no noise: what is beyond has that of free motion.
+    """
+    sigma, kinds = scales.sigma.copy(), regime(rows)
+    sigma[:, REST] = sigma[:, FREE]
+    beyond = np.sign(left) * np.maximum(np.abs(left) - HELD * coulomb, 0.0)
+    scale = np.take_along_axis(sigma[None], kinds[:, :, None], axis=2)[:, :, 0]
+    return np.asarray(np.where(kinds == REST, beyond, left) / scale)
+
+
+def uncertainty(rows: Rows, scales: Scales, coulomb: Array) -> Array:
+    """Return what a residual (n, N) is known to, Nm: the noise, at rest about what friction may hold."""
+    known = np.maximum(scales.sigma[:, FREE], coulomb)
+    return np.where(regime(rows) == REST, known, scales.sigma[:, FREE])
 
 
 def _joined(loud: NDArray[np.bool_], step: float) -> list[slice]:
@@ -87,11 +98,12 @@ def _joined(loud: NDArray[np.bool_], step: float) -> list[slice]:
     return [p for p in parts if (p.stop - p.start) * step >= SHORTEST]
 
 
-def _episode(run: int, part: slice, rows: Rows, left: Array, scaled: Array) -> Episode:
+def episode(run: int, part: slice, rows: Rows, left: Array, scales: Scales, coulomb: Array) -> Episode:
+    """Return what residuals (n, N) are in some rows of a run; coulomb (N,): as in `episodes`."""
+    scaled = _scaled(rows, left, scales, coulomb)[part]
     return Episode(
         run, part, (float(rows.time[part.start]), float(rows.time[part.stop - 1])),
-        np.mean(scaled[part] ** 2, axis=0), left[part].mean(axis=0),
-        np.sqrt(np.mean(left[part] ** 2, axis=0)),
+        np.mean(scaled**2, axis=0), left[part].mean(axis=0), np.sqrt(np.mean(left[part] ** 2, axis=0)),
     )  # fmt: skip
 
 

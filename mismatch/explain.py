@@ -101,7 +101,8 @@ def _answered(task: Task, progress: Progress) -> Explanation:
 class _Told:
     """What was named, and from which rows.
 
-    recorded; every: a load that comes and goes taken off; evidence: rows of pushes left out as well.
+    recorded; every: a load that comes and goes taken off; evidence: rows of pushes left out as well; weighed:
+    that by what the names leave.
     """
 
     recorded: Evidence
@@ -110,6 +111,7 @@ class _Told:
     load: Carried | None
     push: Pushed | None
     judged: Judged
+    weighed: Evidence
 
 
 def _told(recorded: Evidence, progress: Progress) -> _Told:
@@ -118,10 +120,12 @@ def _told(recorded: Evidence, progress: Progress) -> _Told:
     every = unloaded(recorded, load) if load else recorded
     judged = judge(every, progress)
     progress("pushes")
-    if not (push := pushed(every, judged)):
-        return _Told(recorded, every, every, load, None, judged)
+    weighed = reweighed(every, judged.model)
+    if not (push := pushed(every, judged, weighed)):
+        return _Told(recorded, every, every, load, None, judged, weighed)
     evidence = released(every, push)
-    return _Told(recorded, every, evidence, load, push, judge(evidence, progress))
+    judged = judge(evidence, progress)
+    return _Told(recorded, every, evidence, load, push, judged, reweighed(evidence, judged.model))
 
 
 def _explained(
@@ -129,9 +133,8 @@ def _explained(
     sources: tuple[Source, ...], lacks: tuple[str, ...], progress: Progress,
 ) -> Explanation:  # fmt: skip
     t = _told(recorded, progress)
-    evidence, judged = t.evidence, t.judged
+    evidence, judged, weighed = t.evidence, t.judged, t.weighed
     progress("what is left")
-    weighed = reweighed(evidence, judged.model)
     which = observed_runs(evidence)
     names, runs = [recordings[r].name for r in which], [t.every.runs[r] for r in which]
     left = _left(weighed, judged.model, weighed)

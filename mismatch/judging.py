@@ -64,6 +64,7 @@ _BODIES = 3
 _FIRST = {
     "link_inertial": ("payload",),
     "temperature_dependent_friction": ("coulomb_friction", "viscous_friction"),
+    "cable_spring": ("current_offset", "friction_asymmetry"),
     "nonlinear_viscous": ("viscous_friction",),
 }
 #: Findings and attempts at most.
@@ -209,7 +210,7 @@ def _best_beside(evidence: Evidence, model: Directions, body: Candidate, others:
 def likelier(order: Sequence[Scored]) -> Scored:
     """Return the best hypothesis, but a load where a changed link explains no more: links rarely change.
 
-    And a level of friction or straight drag, where a change with temperature or bent drag explains no more.
+    And a level, or straight drag, where a change with temperature or angle, or bent drag, explains no more.
     """
     best = order[0]
     first = _FIRST.get(best.candidate.effect, ())

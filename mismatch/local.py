@@ -4,13 +4,13 @@ A damaged tooth acts within a few degrees. What is smooth over the angle takes s
 that place alone; physics gains wherever it acts.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .evidence import Evidence, residual
-from .grams import roots
+from .grams import Root, roots
 from .naming import Scored, chosen
 from .plausibility import NEAR_ZERO
 from .refit import observed_runs, parameters
@@ -21,6 +21,8 @@ Array = NDArray[np.float64]
 
 #: rad; width of a place. Places overlap by half.
 WIDTH = 0.2
+#: What turns links or weighs on them shows in the torque of all joints.
+_OF_THE_ARM = ("joint_elasticity", "encoder_offset", "link_inertial")
 #: One has more of the gain than all others, and more than it should by so many standard deviations.
 MOST, SURE = 0.5, 4.0
 
@@ -34,24 +36,32 @@ def at_one_place(weighed: Evidence, model: Directions, test: Scored) -> str:
     c = test.candidate
     if c.joint is None or c.effect in ("torque_ripple", "backlash", *NEAR_ZERO):
         return ""
+    joints = range(weighed.setup.space.dof) if c.effect in _OF_THE_ARM else (c.joint,)
     q, gain, acts = np.concatenate(
-        [np.stack([rows.q[:, c.joint], *both]) for rows, *both in gains(weighed, model, test, c.joint)],
+        [np.stack([rows.q[:, c.joint], *both]) for rows, *both in _gains(weighed, model, test, joints)],
         axis=1,
     )
     return concentrated(q, gain, acts)
 
 
-def gains(weighed: Evidence, model: Directions, test: Scored, j: int) -> Iterator[tuple[Rows, Array, Array]]:
-    """Give the rows of each observed run, what each gains by a hypothesis on joint j, and should (n,), nats.
+def _gains(
+    weighed: Evidence, model: Directions, test: Scored, joints: Sequence[int]
+) -> Iterator[tuple[Rows, Array, Array]]:
+    """Give the rows of each observed run, what each gains on some joints, and should (n,), nats.
 
-    Should: if all rows did what it says. weighed: by what it leaves, as an addition to a model.
+    Should: if all rows did what the hypothesis says. weighed: by what it leaves, as an addition to a model.
     """
     fits = [parameters(weighed, m) for m in (model, chosen(model, weighed, test.candidate))]
     for run in observed_runs(weighed):
         rows = weighed.runs[run]
-        whiten = roots(rows, weighed.noise)[j]
-        first, last = (whiten @ residual(rows, weighed.setup.space, theta)[:, j] for theta in fits)
-        yield rows, 0.5 * (first**2 - last**2), 0.5 * (first - last) ** 2
+        whiten = roots(rows, weighed.noise)
+        left = [residual(rows, weighed.setup.space, theta) for theta in fits]
+        first, last = (_whitened(whiten, e, joints) for e in left)
+        yield rows, 0.5 * (first**2 - last**2).sum(axis=1), 0.5 * ((first - last) ** 2).sum(axis=1)
+
+
+def _whitened(whiten: Sequence[Root], left: Array, joints: Sequence[int]) -> Array:
+    return np.stack([whiten[j] @ left[:, j] for j in joints], axis=1)
 
 
 def concentrated(q: Array, gain: Array, acts: Array) -> str:
@@ -61,7 +71,7 @@ def concentrated(q: Array, gain: Array, acts: Array) -> str:
     the gain's mean, and half the gain's variance.
     """
     if (whole := float(gain.sum())) <= 0:
-        return "explains nothing of its own joint's torque"
+        return "explains nothing of the torque that it acts on"
     for start in (0.0, 0.5 * WIDTH):
         place = np.floor((q - start) / WIDTH).astype(int)
         first = int(place.min(initial=0))

@@ -172,8 +172,8 @@ def _weights(physics: Physics, q: Array, frame: int, moment: int) -> Array:
 def fitted_force(columns: Array, target: Array) -> Array:
     """Return the force (T, 3), N, that fits torques (T, N) best, instant by instant; columns (T, N, 3).
 
-    In units of the noise: a weak prior of 1 kN keeps directions that no joint feels at zero.
+    In units of the noise: a weak prior of 100 N keeps directions that no joint feels near zero.
     """
-    gram = np.einsum("tji,tjk->tik", columns, columns) + 1e-6 * np.eye(3)
+    gram = np.einsum("tji,tjk->tik", columns, columns) + 1e-4 * np.eye(3)
     right = np.einsum("tji,tj->ti", columns, target)
     return np.asarray(np.linalg.solve(gram, right[:, :, None])[:, :, 0], np.float64)

@@ -1,7 +1,8 @@
 """Pushes: a force that comes and goes, and reaches several joints at once through the arm's geometry.
 
-A push by a person or a thing bends a fit that does not expect it, so they are looked for in what a fit to the
-quiet rows leaves. A brake that drags or a loose plug stays on one joint, and is none.
+A push by a person or a thing bends a fit that does not expect it, so loud ones are looked for in what a fit
+to the quiet rows leaves, and faint ones (faint.py) where there are none. A brake that drags or a loose plug
+stays on one joint, and is none.
 """
 
 from collections.abc import Mapping, Sequence
@@ -11,8 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .acceptance import EVIDENCE
-from .episodes import MOST, Episode, episodes, loudness
-from .evidence import Evidence, renewed, residual, weighed
+from .episodes import MOST, Episode, episode, episodes, loudness, uncertainty
+from .evidence import Evidence, renewed, residual
+from .evidence import weighed as weighed_by
+from .faint import faint
 from .judging import Judged
 from .physics import Physics, fitted_force, forces, levers
 from .refit import observed_runs, parameters
@@ -54,22 +57,18 @@ class Pushed:
     free: tuple[Flags, ...]
 
 
-def pushed(evidence: Evidence, judged: Judged) -> Pushed | None:
-    """Return the pushes in what a model that is fitted to the quiet rows leaves, or None.
+def pushed(evidence: Evidence, judged: Judged, weighed: Evidence) -> Pushed | None:
+    """Return the pushes in what a model leaves of the observed runs: loud ones, else faint ones, or None.
 
-    None, too, where a gear has slack: its blows shake the whole arm.
+    None, too, where a gear has slack: its blows shake the whole arm. weighed: by what the model leaves.
     """
     if any(a.score.candidate.effect == "backlash" for a in judged.accepted):
         return None
-    which = observed_runs(evidence)
-    left = dict(zip(which, _left_by_quiet(evidence, judged.model), strict=True))
-    scales, runs = evidence.scales, evidence.runs
-    found = episodes(runs, which, [left[r] for r in which], scales, evidence.setup.friction[:, 0])
-    # half the squared residuals over the noise, memory taken off
-    worth = 0.5 * sum(e.worth for e in found) / float(np.mean(scales.inflation))
-    force = contact(found, runs, left, evidence.setup.physics, scales.sigma[:, 0])
-    if force is None or worth < _LEAST:
+    which, runs = observed_runs(evidence), evidence.runs
+    found = _loud(evidence, judged.model) or _faint(weighed, judged.model)
+    if found is None:
         return None
+    force, worth = found
     free = {r: np.ones(len(runs[r]), np.bool_) for r in which}
     for e in force.pushes:
         more = round(_AROUND / runs[e.run].step)
@@ -77,6 +76,32 @@ def pushed(evidence: Evidence, judged: Judged) -> Pushed | None:
     if not all(rows.any() for rows in free.values()):
         return None  # nothing is left to learn from
     return Pushed(force, worth, tuple(free[r] for r in which))
+
+
+def _loud(evidence: Evidence, model: Directions) -> tuple[Contact, float] | None:
+    """Return pushes that leave the noise at once, where the model is fitted to the quiet rows, and nats."""
+    which, scales, runs = observed_runs(evidence), evidence.scales, evidence.runs
+    left = dict(zip(which, _left_by_quiet(evidence, model), strict=True))
+    coulomb = evidence.setup.friction[:, 0]
+    found = episodes(runs, which, [left[r] for r in which], scales, coulomb)
+    # half the squared residuals over the noise, memory taken off
+    worth = 0.5 * sum(e.worth for e in found) / float(np.mean(scales.inflation))
+    sigma = {r: uncertainty(runs[r], scales, coulomb) for r in which}
+    force = contact(found, runs, left, evidence.setup.physics, sigma)
+    return (force, worth) if force and worth >= _LEAST else None
+
+
+def _faint(weighed: Evidence, model: Directions) -> tuple[Contact, float] | None:
+    """Return pushes that stand out over the time they last alone, and their nats."""
+    own, space, scales = parameters(weighed, model), weighed.setup.space, weighed.scales
+    left = {r: residual(weighed.runs[r], space, own) for r in observed_runs(weighed)}
+    found = faint(weighed, left)
+    if not found:
+        return None
+    coulomb = weighed.setup.friction[:, 0]
+    pushes = tuple(episode(s.run, s.rows, weighed.runs[s.run], left[s.run], scales, coulomb) for s in found)
+    strongest = max(float(np.linalg.norm(s.force)) for s in found)
+    return Contact(pushes, strongest), sum(s.worth for s in found)
 
 
 def released(evidence: Evidence, found: Pushed) -> Evidence:
@@ -104,19 +129,20 @@ def _keeping(evidence: Evidence, rows: Sequence[Flags]) -> Evidence:
 
 
 def contact(
-    found: Sequence[Episode], runs: Sequence[Rows], left: Mapping[int, Array], physics: Physics, sigma: Array
-) -> Contact | None:
+    found: Sequence[Episode], runs: Sequence[Rows], left: Mapping[int, Array], physics: Physics,
+    sigma: Mapping[int, Array],
+) -> Contact | None:  # fmt: skip
     """Return the pushes among the episodes, or None where they are not nearly all of what comes and goes.
 
     At least half of it has to reach two joints loudly: one joint alone is no push.
 
-    left: residuals (n, N) by run; sigma (N,) Nm: noise of the joints. Each push has a link of its own, and a
-    place on it that stays. A force has three components and the joints are six, so that what is no force
+    left, sigma: residuals (n, N) by run, and what they are known to, Nm. Each push has a link of its own, and
+    a place on it that stays. A force has three components and the joints are six, so that what is no force
     leaves most of itself.
     """
     pushes, strong, most = list[Episode](), 0.0, 0.0
     for e in found:
-        force = _force(physics, runs[e.run].q[e.rows], left[e.run][e.rows] / sigma, sigma)
+        force = _force(physics, runs[e.run].q[e.rows], left[e.run][e.rows], sigma[e.run][e.rows])
         if force and WEAKEST < force.size < STRONGEST and force.aimed > AIMED:
             pushes.append(e)
             most = max(most, force.size)
@@ -145,7 +171,7 @@ def _left_by_quiet(evidence: Evidence, model: Directions) -> list[Array]:
         before, quiet = quiet, [x <= limit for x in loud]
         if all(np.array_equal(a, b) for a, b in zip(before, quiet, strict=True)):
             break
-        fit = weighed(_keeping(evidence, quiet), evidence.noise)
+        fit = weighed_by(_keeping(evidence, quiet), evidence.noise)
     return left
 
 
@@ -161,17 +187,17 @@ class _Force:
     aimed: float
 
 
-def _force(physics: Physics, q: Array, target: Array, sigma: Array) -> _Force | None:
-    """Return the one force that explains residuals (n, N) in units of the noise sigma (N,), or None.
+def _force(physics: Physics, q: Array, left: Array, sigma: Array) -> _Force | None:
+    """Return the one force that explains residuals (n, N), Nm, known to sigma (n, N), or None.
 
     It acts at the origin of a link's frame, or at a place on the link that is found with it.
     """
-    links = range(3, physics.dof + 1)
-    at = {k: forces(physics, q, k) / sigma[:, None] for k in links}  # (n, N, 3)
+    links, target, per = range(3, physics.dof + 1), left / sigma, 1 / sigma[:, :, None]
+    at = {k: forces(physics, q, k) * per for k in links}  # (n, N, 3)
     best = max((_fitted(columns, target) for columns in at.values()), key=lambda f: f.share)
     if best.share > FORCE:
         return best
-    moved = {k: levers(physics, q, k) / sigma[:, None, None] for k in links}  # (n, N, 3, 3)
+    moved = {k: levers(physics, q, k) * per[:, :, None] for k in links}  # (n, N, 3, 3)
     placed = [at[k] + arms @ _place(at[k], arms, target) for k, arms in moved.items()]
     best = max((_fitted(columns, target) for columns in placed), key=lambda f: f.share)
     return best if best.share > PLACED else None

@@ -94,12 +94,15 @@ def along():
 
 @pytest.fixture(scope="session")
 def moved(arm, along):
-    """(friction of qd (T, 3) in Nm, noise in Nm, seed, the arm that moves) -> evidence of 60 s of it."""
+    """(friction of qd (T, 3) in Nm, noise in Nm, seed, the arm that moves) -> evidence of 60 s of it.
 
-    def of(friction, noise: float, seed: int, body: Arm = arm) -> Evidence:
+    beside: what else acts, of time (T,) and q (T, 3), in Nm.
+    """
+
+    def of(friction, noise: float, seed: int, body: Arm = arm, beside=lambda time, q: 0.0) -> Evidence:
         time, rng = np.arange(0.0, 60.0, 0.008), np.random.default_rng(seed)
         q, qd, qdd = along(time)
-        torque = body.observer.inverse_dynamics(q, qd, qdd) + friction(qd)
+        torque = body.observer.inverse_dynamics(q, qd, qdd) + friction(qd) + beside(time, q)
         torque = torque + noise * rng.standard_normal(q.shape)
         return gather([arm.recording(time, torque)], [True], arm.model, arm.robot)
 

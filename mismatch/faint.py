@@ -1,0 +1,130 @@
+"""Faint pushes: forces that do not leave the noise at any instant, but do over the time that they last.
+
+A matched filter (Kay 1998, Fundamentals of Statistical Signal Processing II, ch. 7): every stretch of 0.25 to
+4 s is asked how much likelier a constant force at a link is than nothing, in rows made independent
+(whitening.py), so that what the residual remembers does not pass for a push.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import log
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .acceptance import EVIDENCE
+from .evidence import Evidence
+from .grams import roots
+from .matched import Windows, windows
+from .naming import APART
+from .physics import forces
+from .pool import each
+
+Array = NDArray[np.float64]
+
+#: s, the shortest stretch; and its multiples that are tried: a longer push is several.
+WINDOW, LENGTHS = 0.25, (1, 2, 3, 4, 6, 8, 12, 16)
+#: N, prior width of a force's components; share that it explains of what an offset of each joint does.
+STRENGTH, SHARE = 20.0, 0.8
+#: Of all that comes and goes: faint pushes, and those that no offset of one joint explains as well.
+NEARLY, HALF = 0.8, 0.5
+#: The first link that is pushed: below it a force acts on two joints at most.
+_FIRST = 3
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Rows of a run in which a constant force at a link may act, or offsets of the joints.
+
+    nats, otherwise: by which the force, and offsets, are likelier than nothing; force (3,): N, along the
+    base's axes; by_force, by_joint (N,): what the force, and an offset of each joint, gain there, nats.
+    """
+
+    run: int
+    rows: slice
+    nats: float
+    force: Array
+    by_force: Array
+    otherwise: float
+    by_joint: Array
+
+    @property
+    def worth(self) -> float:
+        """Nats of what there is, force or not."""
+        return max(self.nats, self.otherwise)
+
+    @property
+    def is_force(self) -> bool:
+        """Whether the force explains nearly what offsets of all joints do."""
+        return float(self.by_force.sum()) > SHARE * float(self.by_joint.sum())
+
+    @property
+    def lead(self) -> float:
+        """Nats by which the force explains more than an offset of one joint."""
+        return float(self.by_force.sum() - self.by_joint.max())
+
+
+def faint(weighed: Evidence, left: Mapping[int, Array]) -> list[Stretch]:
+    """Return the faint pushes in what a model leaves (n, N) Nm of runs, or none.
+
+    None, too, unless they are nearly all that comes and goes, and half of it reaches more than one joint.
+    weighed: by what the model leaves.
+    """
+    tried = each(lambda r: _tried(weighed, r, left[r]), left)
+    least = EVIDENCE + log(max(1, sum(count for count, _ in tried)))
+    found = _apart([s for _, some in tried for s in some if s.worth > least])
+    pushes = [s for s in found if s.is_force]
+    total, nearly = sum(s.worth for s in found), sum(s.worth for s in pushes)
+    told = sum(s.worth for s in pushes if s.lead > APART)
+    return pushes if nearly > NEARLY * total and told > HALF * total else []
+
+
+def _apart(every: list[Stretch]) -> list[Stretch]:
+    """Return stretches of which none lies over a better one."""
+    found = list[Stretch]()
+    for s in sorted(every, key=lambda s: -s.worth):
+        if all(s.run != f.run or s.rows.stop <= f.rows.start or f.rows.stop <= s.rows.start for f in found):
+            found.append(s)
+    return found
+
+
+def _tried(weighed: Evidence, run: int, left: Array) -> tuple[int, list[Stretch]]:
+    """Try every stretch of a run with a force at each link; return how many, and what is worth a look.
+
+    left (n, N): Nm.
+    """
+    rows, physics = weighed.runs[run], weighed.setup.physics
+    width, joints = max(1, round(WINDOW / rows.step)), range(physics.dof)
+    whiten, ones = roots(rows, weighed.noise), np.ones((len(rows), 1))
+    target = [w @ left[:, j] for j, w in enumerate(whiten)]
+    offsets = [windows(whiten[j], ones, target[j], width) for j in joints]
+    count, found = 0, list[Stretch]()
+    for link in range(_FIRST, physics.dof + 1):
+        turns = forces(physics, rows.q, link)
+        acts = [windows(whiten[j], turns[:, j], target[j], width) for j in joints]
+        for length in (k for k in LENGTHS if k * width <= len(rows)):
+            at = [slice(k * width, (k + length) * width) for k in range(len(rows) // width - length + 1)]
+            by = _by_force(acts, length), _by_joint(offsets, 0.5 * weighed.torque, length)
+            some = zip(at, *by[0], *by[1], strict=True)
+            count += len(at)
+            found += [s for s in (Stretch(run, *x) for x in some) if s.worth > EVIDENCE]
+    return count, found
+
+
+def _by_force(acts: Sequence[Windows], length: int) -> tuple[Array, Array, Array]:
+    """Return nats (S,), force (S, 3) and what it gains on each joint (S, N), of all stretches."""
+    parts = [w.over(length) for w in acts]
+    matrix, right = np.stack([a for a, _ in parts], axis=1), np.stack([b for _, b in parts], axis=1)
+    whole, to = matrix.sum(axis=1) + np.eye(3) / STRENGTH**2, right.sum(axis=1)
+    force = np.linalg.solve(whole, to[:, :, None])[:, :, 0]
+    nats = 0.5 * np.einsum("sa,sa->s", to, force) - 0.5 * np.linalg.slogdet(whole * STRENGTH**2)[1]
+    squares = np.einsum("sa,sjab,sb->sj", force, matrix, force)
+    return nats, force, np.einsum("sja,sa->sj", right, force) - 0.5 * squares
+
+
+def _by_joint(offsets: Sequence[Windows], std: Array, length: int) -> tuple[Array, Array]:
+    """Return nats (S,) of offsets, prior width std (N,) Nm, where joints ask for one; gains (S, N)."""
+    parts = [w.over(length) for w in offsets]
+    matrix, right = np.stack([a[:, 0, 0] for a, _ in parts], 1), np.stack([b[:, 0] for _, b in parts], 1)
+    gain = 0.5 * right**2 / np.maximum(matrix, 1e-300)
+    return np.maximum(gain - 0.5 * np.log1p(matrix * std**2), 0.0).sum(axis=1), gain

@@ -1,0 +1,61 @@
+"""A push below the noise is found by the time it lasts; what is no force, or nothing, is not."""
+
+import numpy as np
+import pytest
+
+from residuum.mismatch.evidence import residual
+from residuum.mismatch.faint import faint
+from residuum.mismatch.naming import nuisance, reweighed
+from residuum.mismatch.physics import forces
+from residuum.mismatch.refit import observed_runs, parameters
+
+START, END = 31.0, 34.0
+FORCE = np.array([0.6, -0.4, 0.9])
+
+
+def friction(qd):
+    return np.array([5.0, 6.0, 4.0]) * np.tanh(qd / 1e-3) + 2.0 * qd
+
+
+def found(evidence):
+    weighed = reweighed(evidence, model := nuisance(evidence))
+    own, space = parameters(weighed, model), weighed.setup.space
+    return faint(weighed, {r: residual(weighed.runs[r], space, own) for r in observed_runs(weighed)})
+
+
+def during(time):
+    return ((time > START) & (time < END))[:, None]
+
+
+def test_a_push_below_the_noise_is_found(arm, moved) -> None:
+    """1.2 N for 3 s: 0.2-0.3 Nm, about the noise of a row, of which loud ones are six times as much."""
+    pushed = moved(
+        friction, 0.5, 3, beside=lambda time, q: during(time) * (forces(arm.physics, q, 3) @ FORCE)
+    )
+    stretches = found(pushed)
+    time = pushed.runs[0].time
+    assert stretches and all(s.lead > 5 for s in stretches)
+    assert time[min(s.rows.start for s in stretches)] == pytest.approx(START, abs=0.4)
+    assert time[max(s.rows.stop for s in stretches) - 1] == pytest.approx(END, abs=0.4)
+    assert np.linalg.norm(stretches[0].force - FORCE) < 0.5 * np.linalg.norm(FORCE)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_noise_is_no_push(moved, seed) -> None:
+    assert found(moved(friction, 0.5, seed)) == []
+
+
+def test_what_drags_on_one_joint_is_no_push(moved) -> None:
+    drag = np.array([0.0, 0.0, 0.6])
+    assert found(moved(friction, 0.5, 3, beside=lambda time, q: during(time) * drag)) == []
+
+
+def test_a_push_beside_what_drags_more_is_not_believed(arm, moved) -> None:
+    """What comes and goes is then mostly something else."""
+
+    def both(time, q):
+        later = ((time > 45.0) & (time < 48.0))[:, None]
+        drag = later * np.array([0.0, 0.0, 1.2])
+        return during(time) * (forces(arm.physics, q, 3) @ FORCE) + drag
+
+    assert found(moved(friction, 0.5, 3, beside=both)) == []
