@@ -77,10 +77,7 @@ def own_columns(gear: float) -> tuple[Column, ...]:
     found = [Column("gain", "e")]
     for term in TERMS:
         entry = CATALOGUE[term]
-        grid = [(name, values) for (t, name), values in GRIDS.items() if t == term]
-        tried: list[tuple[tuple[str, float], ...]]
-        tried = [((name, v),) for name, values in grid for v in values] or [()]
-        width = (("width", WIDTH),) if "width" in entry.parameters else ()
+        tried, width = GRIDS.get(term, ((),)), (("width", WIDTH),) if "width" in entry.parameters else ()
         found += [Column(term, p, values + width) for values in tried for p in entry.linear_in]
     found += [Column("coulomb", "Fc", (("width", w),)) for w in SOFT]
     found += [Column(SLACK, "gap", (("gap", x),)) for x in GAPS]

@@ -15,6 +15,8 @@ from ..codegen.regressors import Regressor
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+#: Nonlinear values of a term by name.
+Setting = tuple[tuple[str, float], ...]
 
 
 @dataclass(frozen=True)
@@ -41,14 +43,18 @@ class Column:
         return self.term in BASELINE and not self.soft
 
 
+def _along(name: str, *values: float) -> tuple[Setting, ...]:
+    return tuple(((name, v),) for v in values)
+
+
 #: Nonlinear values that are tried: half a decade apart or less, over the catalogue's plausible range.
-GRIDS: Mapping[tuple[str, str], tuple[float, ...]] = {
-    ("stribeck", "vs"): (0.02, 0.04, 0.08, 0.16, 0.3),
-    ("power", "n"): (0.5,),
-    ("tanh", "vt"): (0.3, 1.0),
-    ("presliding", "zs"): (0.0003, 0.001, 0.003, 0.006, 0.012, 0.03),
-    ("lag", "lag"): (0.003, 0.006, 0.012, 0.02, 0.04),
-    ("position_dependent", "n"): (1.0, 2.0, 3.0),
+GRIDS: Mapping[str, tuple[Setting, ...]] = {
+    "stribeck": tuple((("vs", v), ("delta", d)) for d in (2.0, 1.0) for v in (0.02, 0.04, 0.08, 0.16, 0.3)),
+    "power": _along("n", 0.5),
+    "tanh": _along("vt", 0.3, 1.0),
+    "presliding": _along("zs", 0.0003, 0.001, 0.003, 0.006, 0.012, 0.03),
+    "lag": _along("lag", 0.003, 0.006, 0.012, 0.02, 0.04),
+    "position_dependent": _along("n", 1.0, 2.0, 3.0),
 }
 #: The column of slack, which is no term of a joint alone; half its width (rad), neighbours mix.
 SLACK = "slack"

@@ -120,14 +120,14 @@ def _contact(p: Parts, found: Pushed) -> dict[str, Any]:
     return {
         "effect": "external_contact",
         "joints": joints,
-        "indistinguishable_from": [],
-        "confidence": 0.9,
+        "indistinguishable_from": ["payload"] if found.contact.weighs else [],
+        "confidence": 0.45 if found.contact.weighs else 0.9,
         "parameters": {"force": quantity(found.contact.force, None, "N")}
         | {f"torque_{j}": quantity(_strongest(pushes, j - 1), None, "Nm") for j in joints},
         "equation": EFFECTS["external_contact"].equation,
         "share": {str(j): round(_episode_share(p, pushes, j - 1), 3) for j in joints},
         "intervals": [[round(x, 3) for x in e.span] for e in pushes],
-        "next_motion": None,
+        "next_motion": EFFECTS["payload"].motion if found.contact.weighs else None,
     }
 
 

@@ -65,7 +65,7 @@ _FIRST = {
     "link_inertial": ("payload",),
     "temperature_dependent_friction": ("coulomb_friction", "viscous_friction"),
     "cable_spring": ("current_offset", "friction_asymmetry"),
-    "nonlinear_viscous": ("viscous_friction",),
+    "nonlinear_viscous": ("viscous_friction", "stribeck"),
 }
 #: Findings and attempts at most.
 MOST, TRIES = 12, 24

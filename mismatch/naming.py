@@ -27,11 +27,12 @@ Array = NDArray[np.float64]
 TIGHT = 0.03
 #: Around standstill every gear differs from Coulomb's law by a few percent of it, in one shape or another,
 EVERY_GEAR = {"stribeck": 0.01, "presliding": 0.01, "lag": 0.03}
-#: and by much of it where it is narrower than this (Stribeck's speed, rad/s).
-NARROW, MUCH = 0.02, 0.3
+#: and by much of it where it is narrower than this (speed of Stribeck's bell, rad/s); by less and less of it
+#: where it is wider than that.
+NARROW, MUCH, WIDE = 0.02, 0.3, 0.04
 #: and how it passes zero speed may rise by this much of it above it, since some bends are sharper than a
 #: smooth sign's.
-PEAK = 0.15
+PEAK = 0.05
 #: rad; over so short a travel the whole Coulomb level may build up, over more of it less and less.
 SHORTEST = 3e-4
 #: Of a column's prior width, for columns that only describe the reference's own imperfections.
@@ -105,7 +106,10 @@ def _usual_part(column: Column) -> float:
     """Return the part of the Coulomb level that a shape near standstill may have in every gear."""
     if column.term == "presliding":
         return float(max((SHORTEST / column.value["zs"]) ** 3, EVERY_GEAR["presliding"]))
-    return MUCH if column.value.get("vs", 1.0) <= NARROW else EVERY_GEAR[column.term]
+    if column.term == "stribeck":
+        bell = 0.5 * column.value["vs"] * 4 ** (1 / column.value["delta"])  # the one that ends as soon
+        return MUCH if bell <= NARROW else EVERY_GEAR["stribeck"] * min(1.0, WIDE / bell) ** 2
+    return EVERY_GEAR[column.term]
 
 
 def shared(space: Space, keep: Sequence[int], std: Sequence[float]) -> Directions:

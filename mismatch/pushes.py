@@ -36,16 +36,22 @@ LOUD = 10.0
 NEARLY, HALF = 0.8, 0.5
 #: Nats; rounds of finding the quiet rows; s around a push in which it may have begun and ended.
 _LEAST, _ROUNDS, _AROUND = 10 * EVIDENCE, 6, 0.5
+#: A force that points down by this share of its size, so many s in all, may be a weight.
+_DOWN, _HELD = 0.95, 2.0
 #: m; how far from a frame's origin a link or what it holds is touched, usually and at most; rounds.
 _GRIP, _REACH, _PLACES = 0.1, 0.3, 20
 
 
 @dataclass(frozen=True)
 class Contact:
-    """Episodes that a force explains on all joints, and the strongest one's force, N."""
+    """Episodes that a force explains on all joints, and the strongest one's force, N.
+
+    weighs: it only points down, as a load would that is picked up and put down.
+    """
 
     pushes: tuple[Episode, ...]
     force: float
+    weighs: bool = False
 
 
 @dataclass(frozen=True)
@@ -101,7 +107,9 @@ def _faint(weighed: Evidence, model: Directions) -> tuple[Contact, float] | None
     coulomb = weighed.setup.friction[:, 0]
     pushes = tuple(episode(s.run, s.rows, weighed.runs[s.run], left[s.run], scales, coulomb) for s in found)
     strongest = max(float(np.linalg.norm(s.force)) for s in found)
-    return Contact(pushes, strongest), sum(s.worth for s in found)
+    down = all(-s.force[2] > _DOWN * np.linalg.norm(s.force) for s in found)
+    held = sum(e.span[1] - e.span[0] for e in pushes)
+    return Contact(pushes, strongest, bool(down and held > _HELD)), sum(s.worth for s in found)
 
 
 def released(evidence: Evidence, found: Pushed) -> Evidence:

@@ -88,7 +88,7 @@ def _term(
         found["constant"] = quantity(size[1], std[1], "Nm")
     for name, value in c.values:
         if name != "width":
-            found[name] = quantity(value, spread, units[name])
+            found[name] = quantity(value, None if name == "delta" else spread, units[name])
     return found
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from .candidates import of_key
+from .candidates import Candidate, of_key
 from .evidence import Evidence
 from .judging import Judged
 from .naming import scored
@@ -30,13 +30,19 @@ def sharpened(evidence: Evidence, judged: Judged) -> dict[int, Sharp]:
         free = [n for n, _ in c.values if n not in ("width", "n", "around", "jerk")]
         if c.whole or not free:  # a mixture has its value between the two already
             continue
-        same = [x for x in of_key(evidence.found.each, c.key) if x.terms == c.terms]
+        along = [x for x in of_key(evidence.found.each, c.key) if x.terms == c.terms]
+        same = [x for x in along if _but(x, free[0]) == _but(c, free[0])]
         if len(same) < 3:
             continue
         heights = [s.evidence for s in scored(evidence, without(judged, k), same)]
         value, std = peak([dict(x.values)[free[0]] for x in same], heights)
         found[k] = Sharp({free[0]: value}, std)
     return found
+
+
+def _but(candidate: Candidate, name: str) -> dict[str, float]:
+    """Return a hypothesis' nonlinear values but one."""
+    return {n: v for n, v in candidate.values if n != name}
 
 
 def without(judged: Judged, k: int) -> Directions:

@@ -58,10 +58,11 @@ _PLAIN = (
     Term(
         "stribeck",
         "stribeck",
-        _s("Fs") * sp.exp(-((QD / _s("vs")) ** 2)) * _sign,
+        _s("Fs") * sp.exp(-((sp.Abs(QD) / _s("vs")) ** _s("delta"))) * _sign,
         {
             "Fs": Parameter(_TORQUE, "static minus Coulomb level", None, (0.1, 10.0)),
             "vs": Parameter("rad/s", "Stribeck speed", 0.1, (0.02, 0.3)),
+            "delta": Parameter("1", "exponent: 1 Tustin's, 2 a bell", 2.0, (0.5, 2.0)),
             "width": WIDTH,
         },
         _ARMSTRONG,

@@ -164,7 +164,7 @@ def _with_load(joint, mass: float):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("stribek", "did you mean stribeck"), ("stribeck:7", "numbers from 1 to 3"), ("stribeck:2:vx=1", "known: vs, width"),
+        ("stribek", "did you mean stribeck"), ("stribeck:7", "numbers from 1 to 3"), ("stribeck:2:vx=1", "known: vs, delta, width"),
         ("stribeck:2:vs=x", "give a number"), ("viscous:Fv=1", "no such parameter"),
     ],
 )  # fmt: skip
