@@ -53,7 +53,7 @@ GRIDS: Mapping[str, tuple[Setting, ...]] = {
     "power": _along("n", 0.5),
     "tanh": _along("vt", 0.3, 1.0),
     "presliding": _along("zs", 0.0003, 0.001, 0.003, 0.006, 0.012, 0.03),
-    "lag": _along("lag", 0.003, 0.006, 0.012, 0.02, 0.04),
+    "lag": _along("lag", 0.003, 0.006, 0.012, 0.02, 0.027, 0.033, 0.04),
     "position_dependent": _along("n", 1.0, 2.0, 3.0),
 }
 #: The column of slack, which is no term of a joint alone; half its width (rad), neighbours mix.

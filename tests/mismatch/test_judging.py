@@ -207,15 +207,21 @@ def test_a_late_sign_that_other_joints_show_is_everyones(own, theirs, believed) 
     assert (everyones(own, theirs) == "") == believed
 
 
-def test_friction_changes_with_temperature_only_where_a_plain_level_explains_less() -> None:
-    heat, level = (
-        Candidate(f"{x}_friction", 1, (k,)) for k, x in enumerate(("temperature_dependent", "coulomb"))
-    )
+@pytest.mark.parametrize(
+    ("name", "simpler"),
+    [
+        ("temperature_dependent_friction", "coulomb_friction"),
+        ("cable_spring", "current_offset"),
+        ("nonlinear_viscous", "stribeck"),
+    ],
+)
+def test_a_simpler_name_comes_first_where_it_explains_as_much(name, simpler) -> None:
+    best_of, level = (Candidate(x, 1, (k,)) for k, x in enumerate((name, simpler)))
     gain = [30.0, 40.0, 35.0]
-    best = scored(gain, evidence=104.0, candidate=heat)
+    best = scored(gain, evidence=104.0, candidate=best_of)
     alike = scored(gain, evidence=100.0, candidate=level)
     worse = scored([1.0, 2.0, 1.0], evidence=60.0, candidate=level)
-    elsewhere = scored(gain, evidence=100.0, candidate=Candidate("coulomb_friction", 2, (1,)))
+    elsewhere = scored(gain, evidence=100.0, candidate=Candidate(simpler, 2, (1,)))
     assert likelier([best, alike]) is alike
     assert likelier([best, worse]) is likelier([best, elsewhere]) is best
 

@@ -34,6 +34,12 @@ def test_a_peak_is_no_gentle_start_and_gets_its_name(recorded, speed) -> None:
     assert {("stribeck", j) for j in range(3)} <= named(evidence)
 
 
+def test_a_peak_of_a_tenth_of_the_level_gets_its_name(recorded) -> None:
+    """Several shapes and soft signs that every gear may have a little of must not make it up together."""
+    evidence = recorded(lambda qd: np.sign(qd) * (5.0 + 0.5 * np.exp(-np.abs(qd) / 0.07)))
+    assert named(evidence) == {("stribeck", j) for j in range(3)}
+
+
 @pytest.mark.parametrize("width", [0.005, 0.02])
 def test_a_gentle_start_is_every_gears(recorded, width) -> None:
     """Sharper than a smooth sign bends, which a wide sign and a peak together would imitate."""
