@@ -17,8 +17,9 @@ Array = NDArray[np.float64]
 LEVEL, WINDOW = 6.0, 0.25
 #: s; shorter pauses belong to the episode, shorter episodes are none.
 PAUSE, SHORTEST = 0.6, 0.15
-#: A joint at rest holds up to so much of its Coulomb level, since breaking away takes more than moving on.
-HELD = 1.5
+#: A joint at rest holds up to so much of its Coulomb level: breaking away takes more than moving on, and the
+#: level of a straight line may be 60 % of that at low speed where friction bends.
+HELD = 2.5
 #: Share of the time that episodes may take: what is always there does not come and go.
 MOST = 0.3
 

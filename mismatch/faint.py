@@ -26,6 +26,8 @@ Array = NDArray[np.float64]
 WINDOW, LENGTHS = 0.25, (1, 2, 3, 4, 6, 8, 12, 16)
 #: N, prior width of a force's components; share that it explains of what an offset of each joint does.
 STRENGTH, SHARE = 20.0, 0.8
+#: So many times what comes and goes in the reference.
+HEALTHY = 2.0
 #: Of all that comes and goes: faint pushes, and those that no offset of one joint explains as well.
 NEARLY, HALF = 0.8, 0.5
 #: The first link that is pushed: below it a force acts on two joints at most.
@@ -67,13 +69,18 @@ class Stretch:
 def faint(weighed: Evidence, left: Mapping[int, Array]) -> list[Stretch]:
     """Return the faint pushes in what a model leaves (n, N) Nm of runs, or none.
 
-    None, too, unless they are nearly all that comes and goes, and half of it reaches more than one joint.
-    weighed: by what the model leaves.
+    They are stronger than what comes and goes in the reference. None, too, unless they are nearly all that
+    comes and goes, and half of it reaches more than one joint. weighed: by what the model leaves.
     """
-    tried = each(lambda r: _tried(weighed, r, left[r]), left)
-    least = EVIDENCE + log(max(1, sum(count for count, _ in tried)))
-    found = _apart([s for _, some in tried for s in some if s.worth > least])
-    pushes = [s for s in found if s.is_force]
+    count, usual, every = 1, 0.0, list[Stretch]()
+    for run, (tried, some) in zip(left, each(lambda r: _tried(weighed, r, left[r]), left), strict=True):
+        if weighed.observed[run]:
+            count, every = count + tried, every + some
+        else:
+            usual = max([usual, *(s.worth for s in some)])
+    least = max(EVIDENCE + log(count), HEALTHY * usual)
+    found = _apart([s for s in every if s.worth > least])
+    pushes = [s for s in found if s.is_force and s.nats > least]
     total, nearly = sum(s.worth for s in found), sum(s.worth for s in pushes)
     told = sum(s.worth for s in pushes if s.lead > APART)
     return pushes if nearly > NEARLY * total and told > HALF * total else []
@@ -95,7 +102,8 @@ def _tried(weighed: Evidence, run: int, left: Array) -> tuple[int, list[Stretch]
     """
     rows, physics = weighed.runs[run], weighed.setup.physics
     width, joints = max(1, round(WINDOW / rows.step)), range(physics.dof)
-    whiten, ones = roots(rows, weighed.noise), np.ones((len(rows), 1))
+    noise = weighed.noise if weighed.observed[run] else weighed.scales
+    whiten, ones = roots(rows, noise), np.ones((len(rows), 1))
     target = [w @ left[:, j] for j, w in enumerate(whiten)]
     offsets = [windows(whiten[j], ones, target[j], width) for j in joints]
     count, found = 0, list[Stretch]()

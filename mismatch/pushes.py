@@ -99,8 +99,9 @@ def _loud(evidence: Evidence, model: Directions) -> tuple[Contact, float] | None
 
 def _faint(weighed: Evidence, model: Directions) -> tuple[Contact, float] | None:
     """Return pushes that stand out over the time they last alone, and their nats."""
-    own, space, scales = parameters(weighed, model), weighed.setup.space, weighed.scales
-    left = {r: residual(weighed.runs[r], space, own) for r in observed_runs(weighed)}
+    space, scales, sides = weighed.setup.space, weighed.scales, weighed.observed
+    own = {side: parameters(weighed, model, healthy=not side) for side in set(sides)}
+    left = {r: residual(x, space, own[sides[r]]) for r, x in enumerate(weighed.runs) if len(x)}
     found = faint(weighed, left)
     if not found:
         return None
