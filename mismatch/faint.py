@@ -28,6 +28,8 @@ WINDOW, LENGTHS = 0.25, (1, 2, 3, 4, 6, 8, 12, 16)
 STRENGTH, SHARE = 20.0, 0.8
 #: So many times what comes and goes in the reference.
 HEALTHY = 2.0
+#: With a reference, so many times the nats: where it has not been, the healthy robot is known to less.
+EXTRAPOLATED = 3.0
 #: Of all that comes and goes: faint pushes, and those that no offset of one joint explains as well.
 NEARLY, HALF = 0.8, 0.5
 #: The first link that is pushed: below it a force acts on two joints at most.
@@ -78,7 +80,8 @@ def faint(weighed: Evidence, left: Mapping[int, Array]) -> list[Stretch]:
             count, every = count + tried, every + some
         else:
             usual = max([usual, *(s.worth for s in some)])
-    least = max(EVIDENCE + log(count), HEALTHY * usual)
+    asked = (EVIDENCE + log(count)) * (EXTRAPOLATED if weighed.has_reference else 1.0)
+    least = max(asked, HEALTHY * usual)
     found = _apart([s for s in every if s.worth > least])
     pushes = [s for s in found if s.is_force and s.nats > least]
     total, nearly = sum(s.worth for s in found), sum(s.worth for s in pushes)

@@ -36,6 +36,8 @@ LOUD = 10.0
 NEARLY, HALF = 0.8, 0.5
 #: Nats; rounds of finding the quiet rows; s around a push in which it may have begun and ended.
 _LEAST, _ROUNDS, _AROUND = 10 * EVIDENCE, 6, 0.5
+#: Of an episode's squares, in a fit that has seen it: pushes bend it, but not all the way.
+_STAYS = 0.3
 #: A force that points down by this share of its size, so many s in all, may be a weight.
 _DOWN, _HELD = 0.95, 2.0
 #: m; how far from a frame's origin a link or what it holds is touched, usually and at most; rounds.
@@ -88,13 +90,20 @@ def _loud(evidence: Evidence, model: Directions) -> tuple[Contact, float] | None
     """Return pushes that leave the noise at once, where the model is fitted to the quiet rows, and nats."""
     which, scales, runs = observed_runs(evidence), evidence.scales, evidence.runs
     left = dict(zip(which, _left_by_quiet(evidence, model), strict=True))
-    coulomb = evidence.setup.friction[:, 0]
+    coulomb, own = evidence.setup.friction[:, 0], parameters(evidence, model)
     found = episodes(runs, which, [left[r] for r in which], scales, coulomb)
+    bent = {r: residual(runs[r], evidence.setup.space, own) for r in which}
+    found = [e for e in found if _stays(e, episode(e.run, e.rows, runs[e.run], bent[e.run], scales, coulomb))]
     # half the squared residuals over the noise, memory taken off
     worth = 0.5 * sum(e.worth for e in found) / float(np.mean(scales.inflation))
     sigma = {r: uncertainty(runs[r], scales, coulomb) for r in which}
     force = contact(found, runs, left, evidence.setup.physics, sigma)
     return (force, worth) if force and worth >= _LEAST else None
+
+
+def _stays(left_out: Episode, fitted: Episode) -> bool:
+    """Return whether an episode is there in a fit to all rows, too: else leaving it out has made it."""
+    return float(fitted.strength.sum()) > _STAYS * float(left_out.strength.sum())
 
 
 def _faint(weighed: Evidence, model: Directions) -> tuple[Contact, float] | None:
