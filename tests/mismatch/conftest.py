@@ -93,20 +93,25 @@ def along():
 
 
 @pytest.fixture(scope="session")
-def moved(arm, along):
-    """(friction of qd (T, 3) in Nm, noise in Nm, seed, the arm that moves) -> evidence of 60 s of it.
+def recorded_arm(arm, along):
+    """(friction of qd (T, 3) in Nm, noise in Nm, seed, the arm that moves) -> 60 s of it.
 
     beside: what else acts, of time (T,) and q (T, 3), in Nm.
     """
 
-    def of(friction, noise: float, seed: int, body: Arm = arm, beside=lambda time, q: 0.0) -> Evidence:
+    def of(friction, noise: float, seed: int, body: Arm = arm, beside=lambda time, q: 0.0) -> Recording:
         time, rng = np.arange(0.0, 60.0, 0.008), np.random.default_rng(seed)
         q, qd, qdd = along(time)
         torque = body.observer.inverse_dynamics(q, qd, qdd) + friction(qd) + beside(time, q)
-        torque = torque + noise * rng.standard_normal(q.shape)
-        return gather([arm.recording(time, torque)], [True], arm.model, arm.robot)
+        return arm.recording(time, torque + noise * rng.standard_normal(q.shape))
 
     return of
+
+
+@pytest.fixture(scope="session")
+def moved(arm, recorded_arm):
+    """What `recorded_arm` takes -> evidence of it."""
+    return lambda *a, **named: gather([recorded_arm(*a, **named)], [True], arm.model, arm.robot)
 
 
 @pytest.fixture(scope="session")

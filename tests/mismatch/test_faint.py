@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from residuum.mismatch.evidence import residual
+from residuum.mismatch.evidence import gather, residual
 from residuum.mismatch.faint import faint
 from residuum.mismatch.naming import nuisance, reweighed
 from residuum.mismatch.physics import forces
-from residuum.mismatch.refit import observed_runs, parameters
+from residuum.mismatch.refit import parameters
 
 START, END = 31.0, 34.0
 FORCE = np.array([0.6, -0.4, 0.9])
@@ -19,8 +19,9 @@ def friction(qd):
 
 def found(evidence):
     weighed = reweighed(evidence, model := nuisance(evidence))
-    own, space = parameters(weighed, model), weighed.setup.space
-    return faint(weighed, {r: residual(weighed.runs[r], space, own) for r in observed_runs(weighed)})
+    own = [parameters(weighed, model, healthy=not side) for side in weighed.observed]
+    each = zip(weighed.runs, own, strict=True)
+    return faint(weighed, {r: residual(x, weighed.setup.space, p) for r, (x, p) in enumerate(each)})
 
 
 def during(time):
@@ -59,3 +60,14 @@ def test_a_push_beside_what_drags_more_is_not_believed(arm, moved) -> None:
         return during(time) * (forces(arm.physics, q, 3) @ FORCE) + drag
 
     assert found(moved(friction, 0.5, 3, beside=both)) == []
+
+
+@pytest.mark.parametrize("healthy_too", [False, True])
+def test_what_comes_and_goes_in_the_reference_as_well_is_no_push(arm, recorded_arm, healthy_too) -> None:
+    def push(time, q):
+        return during(time) * (forces(arm.physics, q, 3) @ (4 * FORCE))
+
+    seen = recorded_arm(friction, 0.5, 3, beside=push)
+    reference = recorded_arm(friction, 0.5, 4, **({"beside": push} if healthy_too else {}))
+    evidence = gather([seen, reference], [True, False], arm.model, arm.robot)
+    assert (found(evidence) == []) == healthy_too
