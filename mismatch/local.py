@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .evidence import Evidence, residual
 from .grams import Root, roots
+from .masses import BODIES
 from .naming import Scored, chosen
 from .plausibility import NEAR_ZERO
 from .refit import observed_runs, parameters
@@ -41,6 +42,8 @@ def at_one_place(weighed: Evidence, model: Directions, test: Scored) -> str:
         [np.stack([rows.q[:, c.joint], *both]) for rows, *both in _gains(weighed, model, test, joints)],
         axis=1,
     )
+    if c.effect in BODIES and gain.sum() <= 0:
+        return ""  # masses bend to imitate a body: its evidence is how far they would have to
     return concentrated(q, gain, acts)
 
 
