@@ -77,7 +77,8 @@ def own_columns(gear: float) -> tuple[Column, ...]:
     found = [Column("gain", "e")]
     for term in TERMS:
         entry = CATALOGUE[term]
-        tried, width = GRIDS.get(term, ((),)), (("width", WIDTH),) if "width" in entry.parameters else ()
+        tried = GRIDS.get(term, ((),))
+        width = (("width", WIDTH),) if "width" in entry.parameters else ()
         found += [Column(term, p, values + width) for values in tried for p in entry.linear_in]
     found += [Column("coulomb", "Fc", (("width", w),)) for w in SOFT]
     found += [Column(SLACK, "gap", (("gap", x),)) for x in GAPS]

@@ -20,6 +20,8 @@ PAUSE, SHORTEST = 0.6, 0.15
 #: A joint at rest holds up to so much of its Coulomb level: breaking away takes more than moving on, and the
 #: level of a straight line may be 60 % of that at low speed where friction bends.
 HELD = 2.5
+#: Of all that comes and goes: pushes, and those of them that reach more than one joint.
+NEARLY, HALF = 0.8, 0.5
 #: Share of the time that episodes may take: what is always there does not come and go.
 MOST = 0.3
 
@@ -51,8 +53,9 @@ def episodes(
     found, time, taken = list[Episode](), 0, 0
     for run, left in zip(which, residuals, strict=True):
         rows = runs[run]
-        for part in _joined(loudness(rows, left, scales, coulomb) > 1, rows.step):
-            found.append(episode(run, part, rows, left, scales, coulomb))
+        over = scaled(rows, left, scales, coulomb)
+        for part in _joined(_loudness(rows, over, scales) > 1, rows.step):
+            found.append(episode(run, part, rows, left, over))
             taken += part.stop - part.start
         time += len(rows)
     return found if taken <= MOST * max(time, 1) else []
@@ -60,27 +63,30 @@ def episodes(
 
 def loudness(rows: Rows, left: Array, scales: Scales, coulomb: Array) -> Array:
     """Return how far (n,) the mean of residuals (n, N) over the window leaves the noise: 1 is its end."""
-    scaled, kinds = _scaled(rows, left, scales, coulomb), regime(rows)
+    return _loudness(rows, scaled(rows, left, scales, coulomb), scales)
+
+
+def _loudness(rows: Rows, over: Array, scales: Scales) -> Array:
+    kinds = regime(rows)
     width = max(1, round(WINDOW / rows.step))
     kernel = np.ones(width) / width
     spread = np.sqrt(np.minimum(scales.inflation, width) / width)
     loud = np.zeros(len(rows))
-    for j in range(left.shape[1]):
-        mean = np.convolve(np.clip(scaled[:, j], -50, 50) * (kinds[:, j] != ZERO), kernel, "same")
+    for j in range(over.shape[1]):
+        mean = np.convolve(np.clip(over[:, j], -50, 50) * (kinds[:, j] != ZERO), kernel, "same")
         loud = np.maximum(loud, np.abs(mean) / (LEVEL * spread[j] + 0.3))
     return loud
 
 
-def _scaled(rows: Rows, left: Array, scales: Scales, coulomb: Array) -> Array:
+def scaled(rows: Rows, left: Array, scales: Scales, coulomb: Array) -> Array:
     """Return residuals (n, N) in units of their noise, at rest what is beyond that which friction holds.
 
     What friction holds is bounded, and no noise: what is beyond has that of free motion.
     """
-    sigma, kinds = scales.sigma.copy(), regime(rows)
-    sigma[:, REST] = sigma[:, FREE]
+    kinds = regime(rows)
     beyond = np.sign(left) * np.maximum(np.abs(left) - HELD * coulomb, 0.0)
-    scale = np.take_along_axis(sigma[None], kinds[:, :, None], axis=2)[:, :, 0]
-    return np.asarray(np.where(kinds == REST, beyond, left) / scale)
+    noise = np.where(kinds == ZERO, scales.sigma[:, ZERO], scales.sigma[:, FREE])
+    return np.where(kinds == REST, beyond, left) / noise
 
 
 def uncertainty(rows: Rows, scales: Scales, coulomb: Array) -> Array:
@@ -99,13 +105,17 @@ def _joined(loud: NDArray[np.bool_], step: float) -> list[slice]:
     return [p for p in parts if (p.stop - p.start) * step >= SHORTEST]
 
 
-def episode(run: int, part: slice, rows: Rows, left: Array, scales: Scales, coulomb: Array) -> Episode:
-    """Return what residuals (n, N) are in some rows of a run; coulomb (N,): as in `episodes`."""
-    scaled = _scaled(rows, left, scales, coulomb)[part]
+def episode(run: int, part: slice, rows: Rows, left: Array, over: Array) -> Episode:
+    """Return what residuals (n, N) are in some rows of a run; over (n, N): `scaled`."""
     return Episode(
         run, part, (float(rows.time[part.start]), float(rows.time[part.stop - 1])),
-        np.mean(scaled**2, axis=0), left[part].mean(axis=0), np.sqrt(np.mean(left[part] ** 2, axis=0)),
+        np.mean(over[part] ** 2, axis=0), left[part].mean(axis=0), np.sqrt(np.mean(left[part] ** 2, axis=0)),
     )  # fmt: skip
+
+
+def mostly_pushes(total: float, pushes: float, wide: float) -> bool:
+    """Return whether what comes and goes is a contact: its worth, that of pushes, that of wide pushes."""
+    return pushes > NEARLY * total and wide > HALF * total
 
 
 def involved(found: Sequence[Episode], part: float = 0.08) -> list[int]:

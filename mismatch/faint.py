@@ -13,12 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .acceptance import EVIDENCE
+from .episodes import mostly_pushes
 from .evidence import Evidence
 from .grams import roots
 from .matched import Windows, windows
 from .naming import APART
 from .physics import forces
 from .pool import each
+from .segments import apart, marginal
 
 Array = NDArray[np.float64]
 
@@ -30,8 +32,6 @@ STRENGTH, SHARE = 20.0, 0.8
 HEALTHY = 2.0
 #: With a reference, so many times the nats: where it has not been, the healthy robot is known to less.
 EXTRAPOLATED = 3.0
-#: Of all that comes and goes: faint pushes, and those that no offset of one joint explains as well.
-NEARLY, HALF = 0.8, 0.5
 #: The first link that is pushed: below it a force acts on two joints at most.
 _FIRST = 3
 
@@ -82,20 +82,12 @@ def faint(weighed: Evidence, left: Mapping[int, Array]) -> list[Stretch]:
             usual = max([usual, *(s.worth for s in some)])
     asked = (EVIDENCE + log(count)) * (EXTRAPOLATED if weighed.has_reference else 1.0)
     least = max(asked, HEALTHY * usual)
-    found = _apart([s for s in every if s.worth > least])
+    loud = sorted((s for s in every if s.worth > least), key=lambda s: -s.worth)
+    found = apart(loud, lambda s: (s.run, s.rows))
     pushes = [s for s in found if s.is_force and s.nats > least]
     total, nearly = sum(s.worth for s in found), sum(s.worth for s in pushes)
     told = sum(s.worth for s in pushes if s.lead > APART)
-    return pushes if nearly > NEARLY * total and told > HALF * total else []
-
-
-def _apart(every: list[Stretch]) -> list[Stretch]:
-    """Return stretches of which none lies over a better one."""
-    found = list[Stretch]()
-    for s in sorted(every, key=lambda s: -s.worth):
-        if all(s.run != f.run or s.rows.stop <= f.rows.start or f.rows.stop <= s.rows.start for f in found):
-            found.append(s)
-    return found
+    return pushes if mostly_pushes(total, nearly, told) else []
 
 
 def _tried(weighed: Evidence, run: int, left: Array) -> tuple[int, list[Stretch]]:
@@ -109,14 +101,15 @@ def _tried(weighed: Evidence, run: int, left: Array) -> tuple[int, list[Stretch]
     whiten, ones = roots(rows, noise), np.ones((len(rows), 1))
     target = [w @ left[:, j] for j, w in enumerate(whiten)]
     offsets = [windows(whiten[j], ones, target[j], width) for j in joints]
+    lengths = [k for k in LENGTHS if k * width <= len(rows)]
+    by_joint = {k: _by_joint(offsets, 0.5 * weighed.torque, k) for k in lengths}
     count, found = 0, list[Stretch]()
     for link in range(_FIRST, physics.dof + 1):
         turns = forces(physics, rows.q, link)
         acts = [windows(whiten[j], turns[:, j], target[j], width) for j in joints]
-        for length in (k for k in LENGTHS if k * width <= len(rows)):
+        for length in lengths:
             at = [slice(k * width, (k + length) * width) for k in range(len(rows) // width - length + 1)]
-            by = _by_force(acts, length), _by_joint(offsets, 0.5 * weighed.torque, length)
-            some = zip(at, *by[0], *by[1], strict=True)
+            some = zip(at, *_by_force(acts, length), *by_joint[length], strict=True)
             count += len(at)
             found += [s for s in (Stretch(run, *x) for x in some) if s.worth > EVIDENCE]
     return count, found
@@ -126,9 +119,7 @@ def _by_force(acts: Sequence[Windows], length: int) -> tuple[Array, Array, Array
     """Return nats (S,), force (S, 3) and what it gains on each joint (S, N), of all stretches."""
     parts = [w.over(length) for w in acts]
     matrix, right = np.stack([a for a, _ in parts], axis=1), np.stack([b for _, b in parts], axis=1)
-    whole, to = matrix.sum(axis=1) + np.eye(3) / STRENGTH**2, right.sum(axis=1)
-    force = np.linalg.solve(whole, to[:, :, None])[:, :, 0]
-    nats = 0.5 * np.einsum("sa,sa->s", to, force) - 0.5 * np.linalg.slogdet(whole * STRENGTH**2)[1]
+    nats, force = marginal(matrix.sum(axis=1), right.sum(axis=1), np.full(3, STRENGTH))
     squares = np.einsum("sa,sjab,sb->sj", force, matrix, force)
     return nats, force, np.einsum("sja,sa->sj", right, force) - 0.5 * squares
 

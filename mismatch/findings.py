@@ -36,17 +36,9 @@ def findings_of(p: Parts) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
 def _named(p: Parts, k: int, a: Accepted) -> dict[str, Any]:
     c = a.score.candidate
     sharp = p.sharp.get(k)
-    numbers: dict[str, Quantity] = dict(
-        parameters_of(
-            p.evidence,
-            without(p.judged, k),
-            a.score,
-            p.nominal,
-            sharp.std if sharp else None,
-        )
-    )
-    for name, value in (sharp.value if sharp else {}).items():
-        numbers[name] = quantity(value, sharp.std if sharp else None, numbers[name]["unit"])
+    numbers: dict[str, Quantity] = dict(parameters_of(p.evidence, without(p.judged, k), a.score, p.nominal))
+    if sharp:
+        numbers |= {n: quantity(v, sharp.std, numbers[n]["unit"]) for n, v in sharp.value.items()}
     joints = _joints(p, c)
     return {
         "effect": c.effect,

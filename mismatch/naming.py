@@ -29,7 +29,7 @@ TIGHT = 0.03
 EVERY_GEAR = {"stribeck": 0.01, "presliding": 0.01, "lag": 0.03}
 #: and by much of it where it is narrower than this (speed of Stribeck's bell, rad/s); by less and less of it
 #: where it is wider than that, or later than so many s.
-NARROW, MUCH, WIDE, LATE = 0.02, 0.3, 0.04, 0.006
+NARROW, MUCH, WIDE, PROMPT = 0.02, 0.3, 0.04, 0.006
 #: and how it passes zero speed may rise by this much of it above it, since some bends are sharper than a
 #: smooth sign's.
 PEAK = 0.05
@@ -109,7 +109,7 @@ def _usual_part(column: Column) -> float:
     if column.term == "stribeck":
         bell = 0.5 * column.value["vs"] * 4 ** (1 / column.value["delta"])  # the one that ends as soon
         return MUCH if bell <= NARROW else EVERY_GEAR["stribeck"] * min(1.0, WIDE / bell) ** 2
-    return EVERY_GEAR["lag"] * min(1.0, LATE / column.value["lag"]) ** 2
+    return EVERY_GEAR["lag"] * min(1.0, PROMPT / column.value["lag"]) ** 2
 
 
 def shared(space: Space, keep: Sequence[int], std: Sequence[float]) -> Directions:

@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .acceptance import EVIDENCE
-from .episodes import MOST, Episode, episode, episodes, loudness, uncertainty
+from .episodes import MOST, Episode, episode, episodes, loudness, mostly_pushes, scaled, uncertainty
 from .evidence import Evidence, renewed, residual
 from .evidence import weighed as weighed_by
 from .faint import faint
 from .judging import Judged
 from .physics import Physics, fitted_force, forces, levers
-from .refit import observed_runs, parameters
+from .refit import observed_runs, parameters, residuals
 from .rows import Rows, kept
 from .selection import Directions
 
@@ -32,8 +32,6 @@ FORCE, PLACED, STRONGEST, WEAKEST = 0.8, 0.95, 500.0, 1.0
 AIMED = 0.7
 #: Mean squared residual over noise of a joint that a force reaches.
 LOUD = 10.0
-#: Share of what comes and goes that pushes make, and those of them that reach two joints loudly.
-NEARLY, HALF = 0.8, 0.5
 #: Nats; rounds of finding the quiet rows; s around a push in which it may have begun and ended.
 _LEAST, _ROUNDS, _AROUND = 10 * EVIDENCE, 6, 0.5
 #: Of an episode's squares, in a fit that has seen it: pushes bend it, but not all the way.
@@ -89,11 +87,10 @@ def pushed(evidence: Evidence, judged: Judged, weighed: Evidence) -> Pushed | No
 def _loud(evidence: Evidence, model: Directions) -> tuple[Contact, float] | None:
     """Return pushes that leave the noise at once, where the model is fitted to the quiet rows, and nats."""
     which, scales, runs = observed_runs(evidence), evidence.scales, evidence.runs
-    left = dict(zip(which, _left_by_quiet(evidence, model), strict=True))
-    coulomb, own = evidence.setup.friction[:, 0], parameters(evidence, model)
-    found = episodes(runs, which, [left[r] for r in which], scales, coulomb)
-    bent = {r: residual(runs[r], evidence.setup.space, own) for r in which}
-    found = [e for e in found if _stays(e, episode(e.run, e.rows, runs[e.run], bent[e.run], scales, coulomb))]
+    coulomb, (bent, quiet) = evidence.setup.friction[:, 0], _left_by_quiet(evidence, model)
+    left = dict(zip(which, quiet, strict=True))
+    fitted = {r: scaled(runs[r], e, scales, coulomb) for r, e in zip(which, bent, strict=True)}
+    found = [e for e in episodes(runs, which, quiet, scales, coulomb) if _stays(e, fitted[e.run][e.rows])]
     # half the squared residuals over the noise, memory taken off
     worth = 0.5 * sum(e.worth for e in found) / float(np.mean(scales.inflation))
     sigma = {r: uncertainty(runs[r], scales, coulomb) for r in which}
@@ -101,21 +98,23 @@ def _loud(evidence: Evidence, model: Directions) -> tuple[Contact, float] | None
     return (force, worth) if force and worth >= _LEAST else None
 
 
-def _stays(left_out: Episode, fitted: Episode) -> bool:
-    """Return whether an episode is there in a fit to all rows, too: else leaving it out has made it."""
-    return float(fitted.strength.sum()) > _STAYS * float(left_out.strength.sum())
+def _stays(left_out: Episode, fitted: Array) -> bool:
+    """Return whether an episode is there in a fit to all rows, too: else leaving it out has made it.
+
+    fitted (n, N): what that fit leaves of its rows, in units of the noise.
+    """
+    return float(np.mean(fitted**2, axis=0).sum()) > _STAYS * float(left_out.strength.sum())
 
 
 def _faint(weighed: Evidence, model: Directions) -> tuple[Contact, float] | None:
     """Return pushes that stand out over the time they last alone, and their nats."""
-    space, scales, sides = weighed.setup.space, weighed.scales, weighed.observed
-    own = {side: parameters(weighed, model, healthy=not side) for side in set(sides)}
-    left = {r: residual(x, space, own[sides[r]]) for r, x in enumerate(weighed.runs) if len(x)}
+    left = residuals(weighed, model)
     found = faint(weighed, left)
     if not found:
         return None
-    coulomb = weighed.setup.friction[:, 0]
-    pushes = tuple(episode(s.run, s.rows, weighed.runs[s.run], left[s.run], scales, coulomb) for s in found)
+    scales, coulomb, runs = weighed.scales, weighed.setup.friction[:, 0], weighed.runs
+    over = {r: scaled(runs[r], left[r], scales, coulomb) for r in {s.run for s in found}}
+    pushes = tuple(episode(s.run, s.rows, runs[s.run], left[s.run], over[s.run]) for s in found)
     strongest = max(float(np.linalg.norm(s.force)) for s in found)
     down = all(-s.force[2] > _DOWN * np.linalg.norm(s.force) for s in found)
     held = sum(e.span[1] - e.span[0] for e in pushes)
@@ -166,12 +165,12 @@ def contact(
             most = max(most, force.size)
             strong += e.worth if np.sum(e.strength > LOUD) >= 2 else 0.0
     total = sum(e.worth for e in found)
-    nearly = sum(e.worth for e in pushes) > NEARLY * total and strong > HALF * total
+    nearly = mostly_pushes(total, sum(e.worth for e in pushes), strong)
     return Contact(tuple(pushes), most) if nearly else None
 
 
-def _left_by_quiet(evidence: Evidence, model: Directions) -> list[Array]:
-    """Return what a model that is fitted to the quiet rows leaves of each observed run (n, N), Nm.
+def _left_by_quiet(evidence: Evidence, model: Directions) -> tuple[list[Array], list[Array]]:
+    """Return what a model leaves of each observed run (n, N), Nm: fitted to all rows, and to the quiet ones.
 
     As long as more than MOST is loud, the quieter part counts as quiet (concentration steps of least trimmed
     squares; Rousseeuw and Van Driessen 2006).
@@ -179,9 +178,11 @@ def _left_by_quiet(evidence: Evidence, model: Directions) -> list[Array]:
     which, coulomb = observed_runs(evidence), evidence.setup.friction[:, 0]
     space, fit = evidence.setup.space, evidence
     quiet: list[Flags] = [np.ones(len(evidence.runs[r]), bool) for r in which]
+    first = left = list[Array]()
     for _ in range(_ROUNDS):
         own = parameters(fit, model)
         left = [residual(evidence.runs[r], space, own) for r in which]
+        first = first or left
         loud = [
             loudness(evidence.runs[r], e, evidence.scales, coulomb) for r, e in zip(which, left, strict=True)
         ]
@@ -190,7 +191,7 @@ def _left_by_quiet(evidence: Evidence, model: Directions) -> list[Array]:
         if all(np.array_equal(a, b) for a, b in zip(before, quiet, strict=True)):
             break
         fit = weighed_by(_keeping(evidence, quiet), evidence.noise)
-    return left
+    return first, left
 
 
 @dataclass(frozen=True)

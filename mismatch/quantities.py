@@ -40,10 +40,8 @@ def quantity(value: float, std: float | None, unit: str) -> Quantity:
     }
 
 
-def parameters_of(
-    evidence: Evidence, before: Directions, found: Scored, model: Model, spread: float | None
-) -> dict[str, Quantity]:
-    """Return the physical parameters of a finding; spread: std of its nonlinear value, if it has one."""
+def parameters_of(evidence: Evidence, before: Directions, found: Scored, model: Model) -> dict[str, Quantity]:
+    """Return the physical parameters of a finding, nonlinear values as they stand on their grid."""
     c, size, std = found.candidate, found.size, found.std
     if c.effect == "payload":
         return _payload(evidence, before, model)
@@ -75,12 +73,10 @@ def parameters_of(
         return {"stiffness": quantity(1 / size[0], std[0] / size[0] ** 2, "Nm/rad")}
     if c.effect == "base_tilt":
         return {n: quantity(size[k], std[k], "rad") for k, n in enumerate(("roll", "pitch"))}
-    return _term(evidence, c, size, std, spread)
+    return _term(c, size, std)
 
 
-def _term(
-    evidence: Evidence, c: Candidate, size: Array, std: Array, spread: float | None
-) -> dict[str, Quantity]:
+def _term(c: Candidate, size: Array, std: Array) -> dict[str, Quantity]:
     entry = CATALOGUE[c.terms[0]]
     units = {n: p.unit for n, p in entry.parameters.items()}
     found = {n: quantity(size[k], std[k], units[n]) for k, n in enumerate(entry.linear_in)}
@@ -88,7 +84,7 @@ def _term(
         found["constant"] = quantity(size[1], std[1], "Nm")
     for name, value in c.values:
         if name != "width":
-            found[name] = quantity(value, None if name == "delta" else spread, units[name])
+            found[name] = quantity(value, None, units[name])
     return found
 
 

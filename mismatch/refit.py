@@ -33,6 +33,13 @@ def parameters(
     return np.asarray(evidence.mean + model.vectors @ size, np.float64)
 
 
+def residuals(evidence: Evidence, model: Directions) -> dict[int, Array]:
+    """Return what a model leaves of each run with rows (n, N), Nm: of the reference, with what both share."""
+    sides, space = evidence.observed, evidence.setup.space
+    own = {side: parameters(evidence, model, healthy=not side) for side in set(sides)}
+    return {r: residual(x, space, own[sides[r]]) for r, x in enumerate(evidence.runs) if len(x)}
+
+
 def left_out(evidence: Evidence, model: Directions, healthy: bool = False) -> LeftOut:
     """Return what a model leaves of every observed row that it has not seen; healthy: as in `parameters`."""
     parts, number = blocks(evidence.runs, evidence.observed, True), 0

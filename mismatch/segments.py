@@ -1,13 +1,15 @@
 """Stretches of time in which something is there: a first guess, the likeliest states, what counts as one."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+T = TypeVar("T")
 
 #: Nats that a change of state costs.
 SWITCH = 8.0
@@ -51,21 +53,38 @@ def first_guesses(runs: Sequence[Sums], std: Array, most: int) -> list[tuple[int
         first, last = np.triu_indices(count)
         until = np.concatenate([np.zeros((1, k, k)), np.cumsum(sums.matrix, axis=0)])
         so_far = np.concatenate([np.zeros((1, k)), np.cumsum(sums.right, axis=0)])
-        a = (until[last + 1] - until[first]) * np.outer(std, std) + np.eye(k)
-        b = (so_far[last + 1] - so_far[first]) * std
-        gain = np.einsum("ik,ik->i", b, np.linalg.solve(a, b[:, :, None])[:, :, 0])
-        evidence = 0.5 * gain - 0.5 * np.linalg.slogdet(a)[1]
+        evidence, _ = marginal(until[last + 1] - until[first], so_far[last + 1] - so_far[first], std)
         spans = zip(first.tolist(), last.tolist(), strict=True)
         each += [
             (nats, r, slice(sums.rows[i].start, sums.rows[j].stop))
             for nats, (i, j) in zip(evidence.tolist(), spans, strict=True)
         ]
-    found = list[tuple[int, slice, float]]()
-    for nats, r, part in sorted(each, key=lambda x: -x[0]):
+    best = apart(sorted(each, key=lambda x: -x[0]), lambda x: x[1:], most)
+    return [(r, part, nats) for nats, r, part in best]
+
+
+def marginal(matrix: Array, right: Array, std: Array) -> tuple[Array, Array]:
+    """Return by how many nats (S,) parameters are marginal than none, and the parameters (S, k).
+
+    matrix (S, k, k), right (S, k): normal equations; std (k,): prior widths; of the log marginal likelihood.
+    """
+    a, b = matrix * np.outer(std, std) + np.eye(len(std)), right * std
+    size = np.linalg.solve(a, b[:, :, None])[:, :, 0]
+    return 0.5 * np.einsum("ik,ik->i", b, size) - 0.5 * np.linalg.slogdet(a)[1], std * size
+
+
+def apart(
+    best_first: Iterable[T], place: Callable[[T], tuple[int, slice]], most: int | None = None
+) -> list[T]:
+    """Return those, so many at most, of which none lies over a better one; place: run and rows of each."""
+    found, taken = list[T](), list[tuple[int, slice]]()
+    for one in best_first:
         if len(found) == most:
             break
-        if all(r != run or part.stop <= p.start or part.start >= p.stop for run, p, _ in found):
-            found.append((r, part, nats))
+        run, part = place(one)
+        if all(run != r or part.stop <= p.start or part.start >= p.stop for r, p in taken):
+            found.append(one)
+            taken.append((run, part))
     return found
 
 

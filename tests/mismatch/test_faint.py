@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from residuum.mismatch.evidence import gather, residual
+from residuum.mismatch.evidence import gather
 from residuum.mismatch.faint import faint
 from residuum.mismatch.naming import nuisance, reweighed
 from residuum.mismatch.physics import forces
-from residuum.mismatch.refit import parameters
+from residuum.mismatch.refit import residuals
 
 START, END = 31.0, 34.0
 FORCE = np.array([0.6, -0.4, 0.9])
@@ -19,9 +19,7 @@ def friction(qd):
 
 def found(evidence):
     weighed = reweighed(evidence, model := nuisance(evidence))
-    own = [parameters(weighed, model, healthy=not side) for side in weighed.observed]
-    each = zip(weighed.runs, own, strict=True)
-    return faint(weighed, {r: residual(x, weighed.setup.space, p) for r, (x, p) in enumerate(each)})
+    return faint(weighed, residuals(weighed, model))
 
 
 def during(time):

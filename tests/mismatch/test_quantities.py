@@ -44,6 +44,6 @@ def test_a_gear_between_two_stiffnesses_has_one_between_them() -> None:
     soft = Candidate("joint_elasticity", 0, (0, 1), values, whole=True)
     for parts, expected in (((0.4, 0.4), 1.05e4), ((0.9, -0.1), 9e3)):
         found = Scored(soft, np.ones(4), 50.0, np.array(parts), np.full(2, 0.01))
-        stiffness = parameters_of(None, None, found, None, None)["stiffness"]
+        stiffness = parameters_of(None, None, found, None)["stiffness"]
         assert stiffness["value"] == pytest.approx(expected)
         assert stiffness["unit"] == "Nm/rad" and stiffness["std"] >= MIXING * expected
