@@ -38,6 +38,8 @@ Array = NDArray[np.float64]
 Key = tuple[str, int | None]
 
 
+#: No more of the Coulomb level can change its sign late than there is, given how well it is known.
+LATE_LEVEL = 1.5
 #: Coefficients of what is there as a whole add up to one, or to this (damping and the arm's other joints take
 #: some of a swing); one of two may be below zero by this share of both.
 WHOLE, BEYOND = (0.6, 1.3), 0.2
@@ -48,7 +50,7 @@ class Candidate:
     """An effect on a joint (0-based; None: on all), as columns (D,) of the candidates' directions.
 
     values: nonlinear ones; positive: coefficients that physics wants above zero; whole: its columns are two
-    neighbouring forms of one effect as it is, so that it is mixed of them.
+    neighbouring forms of one effect as it is, so that it is mixed of them. most: of the first coefficient.
     """
 
     effect: str
@@ -58,13 +60,14 @@ class Candidate:
     terms: tuple[str, ...] = ()
     positive: bool = False
     whole: bool = False
+    most: float = np.inf
 
     def conceivable(self, size: Array) -> bool:
-        """Return whether coefficients (k,) are those of physics: of its sign, or of the whole."""
+        """Return whether coefficients (k,) are those of physics: of its sign and size, or of the whole."""
         if self.whole:
             total = float(size.sum())
             return WHOLE[0] < total < WHOLE[1] and bool(size.min() > -BEYOND * total)
-        return not (self.positive and size[0] < 0)
+        return bool(size[0] <= self.most) and not (self.positive and size[0] < 0)
 
     @property
     def key(self) -> Key:
@@ -126,14 +129,15 @@ class Candidates:
 
 def candidates(
     space: Space, physics: Physics, own_std: Array, common_std: dict[str, float], base_std: Array,
-    load: Array, swings: Array, changed: bool,
+    load: Array, swings: Array, levels: Array, changed: bool,
 ) -> Candidates:  # fmt: skip
     """Return every hypothesis of the catalogue that is a column or an inertial direction.
 
     own_std (N, K): prior width of each own column; base_std (B,): of a base parameter. load (N, 2): range of
     what each gear carries, Nm; a load that does not reverse shows no slack. swings (N,): Nm/rad up to which a
-    gear's swing is slow enough to be seen; stiffer ones just lag. changed: sought is what changed since a
-    reference: friction that came to depend on temperature is the old one at a temperature unknown.
+    gear's swing is slow enough to be seen; stiffer ones just lag. levels (N,): Coulomb friction, Nm.
+    changed: sought is what changed since a reference: friction that came to depend on temperature is the old
+    one at a temperature unknown.
     """
     vectors, std, each = list[Array](), list[float](), list[Candidate]()
 
@@ -148,7 +152,9 @@ def candidates(
         groups: Groups = {}
         for k, c in enumerate(space.own):
             if c.term not in NO_PHYSICS and not c.soft:
-                at = add(unit[space.own_index(j, k)], own_std[j, k])
+                builds = c.usual and c.term == "coulomb"
+                parts = [k, *(i for i, x in enumerate(space.own) if x.short and builds)]
+                at = add(unit[[space.own_index(j, i) for i in parts]].sum(axis=0), own_std[j, k])
                 groups.setdefault((c.term, c.values), []).append(at)
         gaps = _neighbours(groups, SLACK, ("gap", "wider"), GAPS)
         if load[j, 0] < 0 < load[j, 1]:
@@ -164,7 +170,9 @@ def candidates(
                 continue
             with_it = set(_BESIDE.get(term, ())) - fitted
             beside = [x for (t, _), some in groups.items() if t in with_it for x in some]
-            each.append(Candidate(_PLAIN[term], j, (*columns, *beside), values, (term,), term in _POSITIVE))
+            most = LATE_LEVEL * levels[j] if term == "lag" else np.inf
+            positive = term in _POSITIVE
+            each.append(Candidate(_PLAIN[term], j, (*columns, *beside), values, (term,), positive, most=most))
     for kind, effect in (("encoder", "encoder_offset"), ("elasticity", "joint_elasticity")):
         for j in range(space.dof):
             at = add(unit[space.common_index(f"{kind}{j + 1}")], common_std[kind])

@@ -38,6 +38,20 @@ class Column:
         return self.value.get("width") in SOFT
 
     @property
+    def short(self) -> bool:
+        """Whether it is what every gear's friction lacks just after a reversal, and no finding."""
+        return self.value.get("zs", SHORT) < SHORT
+
+    @property
+    def builds_up(self) -> bool:
+        """Whether it is part of the level that friction has while it slides, and so builds up over a travel.
+
+        A narrow fall is not: it also stands for gears that start gently by their speed.
+        """
+        narrow = self.term == "stribeck" and self.value["vs"] <= NARROW
+        return self.term in LEVELS and self.parameter != "kv" and not narrow
+
+    @property
     def usual(self) -> bool:
         """Whether it is of the friction that every baseline has: Coulomb with a sharp sign, and viscous."""
         return self.term in BASELINE and not self.soft
@@ -48,12 +62,16 @@ def _along(name: str, *values: float) -> tuple[Setting, ...]:
 
 
 #: Nonlinear values that are tried: half a decade apart or less, over the catalogue's plausible range.
+#: A fall by the first power of speed (delta 1) reaches thrice as far as a bell: over 0.3 rad/s it is drag.
 GRIDS: Mapping[str, tuple[Setting, ...]] = {
-    "stribeck": tuple((("vs", v), ("delta", d)) for d in (2.0, 1.0) for v in (0.02, 0.04, 0.08, 0.16, 0.3)),
+    "stribeck": (
+        *((("vs", v), ("delta", 2.0)) for v in (0.02, 0.04, 0.08, 0.16, 0.3)),
+        *((("vs", v), ("delta", 1.0)) for v in (0.02, 0.04, 0.08, 0.16)),
+    ),
     "power": _along("n", 0.5),
     "tanh": _along("vt", 0.3, 1.0),
     "presliding": _along("zs", 0.0003, 0.001, 0.003, 0.006, 0.012, 0.03),
-    "lag": _along("lag", 0.003, 0.006, 0.012, 0.02, 0.027, 0.033, 0.04),
+    "lag": _along("lag", 0.005, 0.01, 0.018, 0.027, 0.04),
     "position_dependent": _along("n", 1.0, 2.0, 3.0),
 }
 #: The column of slack, which is no term of a joint alone; half its width (rad), neighbours mix.
@@ -65,7 +83,7 @@ STIFFNESSES = tuple(float(f"{x:.3g}") for x in np.geomspace(3e3, 4e4, 12))
 #: The column of a current that comes late on its joint alone, no term either; s, near which its coefficient
 #: is the delay.
 LATE = "late"
-DELAYS = (0.004, 0.01, 0.02)
+DELAYS = (0.005, 0.015)
 #: The column of what the reference's model left where the reference did the same; no term either.
 REPEAT = "repeat"
 #: Columns that only a finding frees: what every model holds anyway does not include them.
@@ -79,6 +97,10 @@ TERMS = (
     "load_dependent", "temperature_dependent", "position_dependent", "presliding", "lag",
 )  # fmt: skip
 
+#: rad/s; every gear differs by much from Coulomb's law where it is slower than this.
+NARROW = 0.02
+#: Terms that make friction's level higher, beside Coulomb's.
+LEVELS = ("stribeck", "load_dependent", "temperature_dependent", "position_dependent")
 #: Terms that are fitted whatever is found.
 BASELINE = ("coulomb", "viscous")
 #: rad/s; width of the smooth sign: far below the terms' default, whose tail reaches far into slow motion.

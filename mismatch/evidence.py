@@ -116,7 +116,9 @@ def gather(
     own_std[:, [c.term == LATE for c in setup.space.own]] = common_std["delay"]
     changed = not all(sides)
     swings = seen(of_links(physics, base, q[::50]))
-    found = candidates(setup.space, physics, own_std, common_std, base_std, limits.load, swings, changed)
+    found = candidates(
+        setup.space, physics, own_std, common_std, base_std, limits.load, swings, friction[:, 0], changed
+    )
     progress("noise")
     none = equal_scales(physics.dof)
     return renewed(Evidence(setup, (), tuple(sides), none, (), found, base_std, torque, own_std), runs)

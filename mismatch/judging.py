@@ -65,8 +65,10 @@ _FIRST = {
     "link_inertial": ("payload",),
     "temperature_dependent_friction": ("coulomb_friction", "viscous_friction"),
     "cable_spring": ("current_offset", "friction_asymmetry"),
-    "nonlinear_viscous": ("viscous_friction", "stribeck"),
+    "nonlinear_viscous": ("viscous_friction",),
 }
+#: And before one of these terms: drag by the root of speed is a Stribeck fall's tail.
+_BEFORE_TERM = {"power": ("stribeck",)}
 #: Findings and attempts at most.
 MOST, TRIES = 12, 24
 #: Without a reference: fitted anyway, or only a matter of which masses are believed.
@@ -184,7 +186,7 @@ def judge(
             continue
         alike, rivals = _rivals(evidence, fitted, best, [o for o in every if o.candidate.key not in hollow])
         accepted.append(Accepted(test, alike, rivals, part.explained))
-        model = chosen(model, evidence, best.candidate)
+        model = chosen(model, evidence, test.candidate)
     return Judged(tuple(accepted), model, tuple(refused), masses[0])
 
 
@@ -213,7 +215,8 @@ def likelier(order: Sequence[Scored]) -> Scored:
     And a level, or straight drag, where a change with temperature or angle, or bent drag, explains no more.
     """
     best = order[0]
-    first = _FIRST.get(best.candidate.effect, ())
+    first = list(_FIRST.get(best.candidate.effect, ()))
+    first += [name for term in best.candidate.terms for name in _BEFORE_TERM.get(term, ())]
     here = (s for s in order if s.candidate.joint in (None, best.candidate.joint))
     return next((s for s in here if s.candidate.effect in first and not told_apart(best, s)), best)
 

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from .candidates import Candidate, Key
-from .columns import BASELINE, BY_NAME, REPEAT, Column, Space
+from .candidates import Candidate, Key, of_key
+from .columns import BASELINE, BY_NAME, NARROW, REPEAT, Column, Space
 from .evidence import Evidence, residual, weighed
 from .grams import Scales, evenly, scales_of
 from .lacking import widths
@@ -27,9 +27,9 @@ Array = NDArray[np.float64]
 TIGHT = 0.03
 #: Around standstill every gear differs from Coulomb's law by a few percent of it, in one shape or another,
 EVERY_GEAR = {"stribeck": 0.01, "presliding": 0.01, "lag": 0.03}
-#: and by much of it where it is narrower than this (speed of Stribeck's bell, rad/s); by less and less of it
-#: where it is wider than that, or later than so many s.
-NARROW, MUCH, WIDE, PROMPT = 0.02, 0.3, 0.04, 0.006
+#: and by much of it where a fall is NARROW; by less and less of it where one is wider than that (speed of
+#: Stribeck's bell, rad/s), or later than so many s.
+MUCH, WIDE, PROMPT = 0.3, 0.04, 0.006
 #: and how it passes zero speed may rise by this much of it above it, since some bends are sharper than a
 #: smooth sign's.
 PEAK = 0.05
@@ -232,8 +232,13 @@ def _consistency(whole: Eliminated, out: Sequence[Eliminated], columns: Sequence
 
 def ranked(evidence: Evidence, model: Directions, skip: Sequence[str] = ()) -> list[Scored]:
     """Return every hypothesis at its best nonlinear value as an addition to a model, best first."""
+    return _at_best(evidence, model, [c for c in evidence.found.each if c.effect not in skip])
+
+
+def _at_best(evidence: Evidence, model: Directions, some: Sequence[Candidate]) -> list[Scored]:
+    """Return the conceivable ones of some hypotheses at their best nonlinear values, best first."""
     best: dict[Key, Scored] = {}
-    for s in scored(evidence, model, [c for c in evidence.found.each if c.effect not in skip]):
+    for s in scored(evidence, model, some):
         c = s.candidate
         clear = not c.whole or s.evidence >= CLEAR
         if (c.key not in best or s.evidence > best[c.key].evidence) and c.conceivable(s.size) and clear:
@@ -242,8 +247,15 @@ def ranked(evidence: Evidence, model: Directions, skip: Sequence[str] = ()) -> l
 
 
 def tested(evidence: Evidence, model: Directions, candidate: Candidate) -> tuple[Scored, Evidence]:
-    """Score one hypothesis with the rows weighed by what is left once it is in; also return these rows."""
+    """Score one hypothesis with the rows weighed by what is left once it is in; also return these rows.
+
+    At the nonlinear value that is best by these weights: before, what it explains was taken for noise.
+    """
     weighed = reweighed(evidence, chosen(model, evidence, candidate))
+    found = _at_best(weighed, model, of_key(evidence.found.each, candidate.key))
+    if found and found[0].candidate != candidate:
+        candidate = found[0].candidate
+        weighed = reweighed(evidence, chosen(model, evidence, candidate))
     return scored(weighed, model, [candidate])[0], weighed
 
 

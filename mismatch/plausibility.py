@@ -1,5 +1,8 @@
 """What is physics at the size that it would have, and what only looks like it."""
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .candidates import Candidate
 from .evidence import Evidence
 from .flexible import names
@@ -7,6 +10,8 @@ from .naming import APART, Scored, chosen, scored
 from .peaks import peak
 from .refit import parameters
 from .selection import Directions
+
+Array = NDArray[np.float64]
 
 #: Friction over the angle is a wave unless any curve explains so much more than it.
 NO_WAVE = 0.5
@@ -16,13 +21,12 @@ DRIVEN = 0.1
 NEAR_ZERO = ("stribeck", "presliding_hysteresis", "velocity_lag")
 #: What builds up with travel or late is much of the Coulomb level, or it is something else; over less travel
 #: (rad) than the catalogue's, which every gear shows a little of, more of it. A reference holds what every
-#: gear has: a change may be small.
+#: gear has: a change of what builds up may be small; what comes late is friction as a whole.
 AT_REVERSALS = {"presliding_hysteresis": 0.2, "velocity_lag": 0.6}
 _TRAVEL, _PART_WITHIN = 0.005, 0.35
-_PART_CHANGED = 0.1
-#: How gears stop and start looks like a late sign, on all joints alike: below the first share of the
-#: Coulomb level, a joint's own lag leads that of the others so many times.
-_WHOLE, _AHEAD = 0.8, 1.7
+_CHANGED = {"presliding_hysteresis": 0.1, "velocity_lag": 0.5}
+#: How gears stop and start looks like a late sign, on all joints alike: a joint's own is so many times later.
+_AHEAD = 1.7
 #: What slack does follows from its width: the size of its column is one, or at least this.
 _LEAST_GAP = 0.3
 #: Nm/rad; a third of the catalogue's softest gear.
@@ -53,7 +57,7 @@ def implausible(evidence: Evidence, test: Scored) -> str:
     if c.effect in AT_REVERSALS and c.joint is not None:
         level = evidence.setup.friction[c.joint, 0]
         least = _PART_WITHIN if is_short(c) else AT_REVERSALS[c.effect]
-        if abs(test.size[0]) < (_PART_CHANGED if evidence.has_reference else least) * level:
+        if abs(test.size[0]) < (_CHANGED[c.effect] if evidence.has_reference else least) * level:
             return f"is {100 * abs(test.size[0]) / level:.0f} % of the Coulomb level: too little for it"
     return ""
 
@@ -111,17 +115,23 @@ def of_all_joints(weighed: Evidence, model: Directions, test: Scored) -> str:
     c, level = test.candidate, weighed.setup.friction[:, 0]
     if c.effect != "velocity_lag" or c.joint is None or weighed.has_reference:
         return ""
-    best: dict[int, Scored] = {}
-    for s in scored(weighed, model, [x for x in weighed.found.each if x.effect == c.effect]):
-        j = s.candidate.joint
-        if j is not None and j != c.joint and (j not in best or s.evidence > best[j].evidence):
-            best[j] = s
-    theirs = max((float(s.size[0] / level[j]) for j, s in best.items()), default=0.0)
-    return everyones(float(test.size[0] / level[c.joint]), theirs)
+    lags = [x for x in weighed.found.each if x.effect == c.effect and x.joint != c.joint]
+    theirs = [
+        _lateness(s, level)
+        for s in scored(weighed, model, lags)
+        if s.evidence >= APART and s.candidate.conceivable(s.size)
+    ]
+    return everyones(_lateness(test, level), max(theirs, default=0.0))
+
+
+def _lateness(lag: Scored, level: Array) -> float:
+    """Return the time (s) by which a joint's Coulomb level as a whole is late; level (N,) Nm."""
+    c = lag.candidate
+    return 0.0 if c.joint is None else dict(c.values)["lag"] * float(lag.size[0] / level[c.joint])
 
 
 def everyones(own: float, theirs: float) -> str:
-    """Return in words that a joint's late sign does not stand out, or nothing; parts of the Coulomb level."""
-    if own >= _WHOLE or own >= _AHEAD * theirs:
+    """Return in words that a joint's late sign does not stand out, or nothing; s."""
+    if own >= _AHEAD * theirs:
         return ""
-    return f"is {100 * own:.0f} % of the Coulomb level, and {100 * theirs:.0f} % on another joint"
+    return f"is {1e3 * own:.0f} ms late, and another joint {1e3 * theirs:.0f} ms"

@@ -97,6 +97,7 @@ def _own(track: Track, part: slice, setup: Setup) -> Array:
     found, place = list[Array](), 0
     cache: dict[tuple[str, tuple[tuple[str, float], ...]], dict[str, Array]] = {}
     direction = signs.sign(track.qd[part], WIDTH)
+    built = _built_up(track, part, setup, direction)
     friction, swift = _friction(track, part, setup), track.swift[part]
     drive = track.motor[part] + friction
     for c in setup.space.own:
@@ -119,7 +120,7 @@ def _own(track: Track, part: slice, setup: Setup) -> Array:
                     c.term, dict(c.values), track.q[part], track.qd[part], track.load[part],
                     track.temperature[part], np.ones(len(direction)),
                 )  # fmt: skip
-            found.append(cache[key][c.parameter])
+            found.append(cache[key][c.parameter] * (built * direction if c.builds_up else 1.0))
     if setup.limits is not None:
         found += curves(
             track.q[part], track.qd[part], track.load[part], track.temperature[part], track.since[part],
@@ -129,9 +130,18 @@ def _own(track: Track, part: slice, setup: Setup) -> Array:
 
 
 def _friction(track: Track, part: slice, setup: Setup) -> Array:
-    """Friction (T, N) that the setup expects, Nm."""
+    """Friction (T, N) that the setup expects, Nm; its level builds up over a short travel."""
     qd = track.qd[part]
-    return np.asarray(setup.friction[:, 0] * signs.sign(qd, WIDTH) + setup.friction[:, 1] * qd, np.float64)
+    level = _built_up(track, part, setup, signs.sign(qd, WIDTH))
+    return np.asarray(setup.friction[:, 0] * level + setup.friction[:, 1] * qd, np.float64)
+
+
+def _built_up(track: Track, part: slice, setup: Setup, direction: Array) -> Array:
+    """Part (T, N), -1..1, of friction's level that pushes: it builds up over a short travel."""
+    for k, column in enumerate(c for c in setup.space.own if remembers(c.term)):
+        if column.short:
+            direction = direction + track.held[part, :, k]
+    return direction
 
 
 def _late(track: Track, part: slice, torque: Array, delay: float, centred: bool = False) -> Array:

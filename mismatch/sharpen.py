@@ -32,10 +32,11 @@ def sharpened(evidence: Evidence, judged: Judged) -> dict[int, Sharp]:
             continue
         along = [x for x in of_key(evidence.found.each, c.key) if x.terms == c.terms]
         same = [x for x in along if _but(x, free[0]) == _but(c, free[0])]
-        if len(same) < 3:
+        some = [s for s in scored(evidence, without(judged, k), same) if s.candidate.conceivable(s.size)]
+        if len(some) < 3:
             continue
-        heights = [s.evidence for s in scored(evidence, without(judged, k), same)]
-        value, std = peak([dict(x.values)[free[0]] for x in same], heights)
+        places = [dict(s.candidate.values)[free[0]] for s in some]
+        value, std = peak(places, [s.evidence for s in some])
         found[k] = Sharp({free[0]: value}, std)
     return found
 

@@ -22,11 +22,18 @@ def _tau0(seconds: float) -> Parameter:
     return Parameter("s", "time constant of the filter that differentiates", seconds)
 
 
-def _dahl() -> Term:
-    """Take from a Coulomb level A what has not built up since the last reversal (Dahl 1976).
+def _built_up(direction: sp.Expr, before: sp.Symbol) -> sp.Expr:
+    """Return the part of a Coulomb level that pushes after a sample, -1..1, on its way to a direction.
 
-    dz/dt = |qd| (sgn qd - z) / zs, over a sample in which the speed keeps its value; with
-    coulomb's Fc = A the sum is A z.
+    dz/dt = |qd| (direction - z) / zs, over a sample in which the speed keeps its value (Dahl 1976).
+    """
+    return direction + (before - direction) * sp.exp(-sp.Abs(QD) * DT / _s("zs"))
+
+
+def _dahl() -> Term:
+    """Take from a Coulomb level A what has not built up since the last reversal.
+
+    With coulomb's Fc = A the sum is A z.
     """
     z = _s("z")
     return Term(
@@ -40,25 +47,34 @@ def _dahl() -> Term:
         },
         "Dahl 1976",
         ("A",),
-        {"z": _sign + (z - _sign) * sp.exp(-sp.Abs(QD) * DT / _s("zs"))},
+        {"z": _built_up(_sign, z)},
     )
 
 
 def _lag() -> Term:
-    """Coulomb friction of a speed that lags behind: what it differs by from the one without lag."""
-    v = _s("v")
+    """Coulomb friction of a speed that lags behind: what it differs by from the one without lag.
+
+    Late or not, a gear's friction builds up over a short travel: a late jump would be of no gear.
+    """
+    v, late, prompt = _s("v"), _s("late"), _s("prompt")
+    slow = _low_pass(QD, v, "lag")
     return Term(
         "lag",
         "velocity_lag",
-        _s("A") * (smooth_sign(v, _s("width")) - _sign),
+        _s("A") * (late - prompt),
         {
             "A": Parameter("Nm", "Coulomb level that changes sign late", None, (0.2, 20.0)),
             "lag": Parameter("s", "time constant of the lag", 8e-3, (2e-3, 2e-2)),
+            "zs": Parameter("rad", "travel after which 63 % of the level are back", 3e-4, (1e-4, 1e-3)),
             "width": WIDTH,
         },
-        "Hess and Soom 1990",
+        "Hess and Soom 1990; Dahl 1976",
         ("A",),
-        {"v": _low_pass(QD, v, "lag")},
+        {
+            "v": slow,
+            "late": _built_up(smooth_sign(slow, _s("width")), late),
+            "prompt": _built_up(_sign, prompt),
+        },
     )
 
 

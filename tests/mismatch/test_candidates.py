@@ -12,7 +12,7 @@ def offered(arm, swings, changed):
     space, n = arm.setup.space, arm.setup.space.dof
     widths = dict.fromkeys(("encoder", "elasticity", "tilt", "delay", "lacking"), 1.0)
     own, base, load = np.ones((n, len(space.own))), np.ones(len(space.base)), np.tile([-1.0, 1.0], (n, 1))
-    return candidates(space, arm.physics, own, widths, base, load, np.array(swings), changed).each
+    return candidates(space, arm.physics, own, widths, base, load, np.array(swings), np.ones(n), changed).each
 
 
 @pytest.mark.parametrize("changed", [True, False])

@@ -3,9 +3,12 @@
 import numpy as np
 import pytest
 
+from residuum.mismatch import naming
+from residuum.mismatch.candidates import of_key
+from residuum.mismatch.columns import NARROW
 from residuum.mismatch.evidence import Evidence
 from residuum.mismatch.judging import judge
-from residuum.mismatch.naming import MUCH, NARROW, PEAK, nuisance
+from residuum.mismatch.naming import MUCH, PEAK, nuisance, scored
 from residuum.mismatch.peaks import peak
 from residuum.mismatch.refit import parameters
 
@@ -32,6 +35,16 @@ def test_a_peak_is_no_gentle_start_and_gets_its_name(recorded, speed) -> None:
         assert peak(space, plain, joint, ["coulomb"]) <= MUCH * level
         assert peak(space, plain, joint, ["coulomb"], NARROW) <= PEAK * level
     assert {("stribeck", j) for j in range(3)} <= named(evidence)
+
+
+def test_a_hypothesis_is_tested_at_the_value_that_its_own_weights_ask_for(recorded) -> None:
+    evidence = recorded(lambda qd: np.sign(qd) * (5.0 + 2.5 * np.exp(-np.abs(qd) / 0.08)))
+    model, each = nuisance(evidence), of_key(evidence.found.each, ("stribeck", 0))
+    wide = max(each, key=lambda c: dict(c.values)["vs"])
+    test, weighed = naming.tested(evidence, model, wide)
+    assert dict(test.candidate.values)["vs"] == 0.08
+    best = max(scored(weighed, model, each), key=lambda s: s.evidence)
+    assert test.candidate == best.candidate != wide
 
 
 def test_a_peak_of_a_tenth_of_the_level_gets_its_name(recorded) -> None:

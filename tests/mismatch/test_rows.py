@@ -10,6 +10,7 @@ from residuum.mismatch.physics import forces, levers, tilts
 from residuum.mismatch.rows import make_rows
 from residuum.mismatch.track import calm_speeds
 from residuum.robots import load_robot
+from residuum.symbolic.terms import CATALOGUE
 from residuum.symbolic.tilt import tilted
 from residuum.virtual.model import build_model, link_frame
 
@@ -46,29 +47,45 @@ def test_the_rigid_body_is_explained_by_its_parameters(arm, along, rate, jitter,
         ("quadratic", {"F2": 1.5}, {}),
         ("cubic", {"F3": 0.7}, {}),
         ("asymmetric", {"Fa": 0.4}, {}),
+        ("stribeck", {"Fs": 2.0}, {"vs": 0.02, "delta": 2.0}),
         ("stribeck", {"Fs": 2.0}, {"vs": 0.08, "delta": 2.0}),
         ("stribeck", {"Fs": 2.0}, {"vs": 0.08, "delta": 1.0}),
         ("position_dependent", {"A": 0.6, "B": -0.3}, {"n": 2.0}),
         ("presliding", {"A": 5.0}, {"zs": 0.012}),
-        ("lag", {"A": 5.0}, {"lag": 0.012}),
+        ("lag", {"A": 5.0}, {"lag": 0.01}),
     ],
 )
 def test_a_term_is_explained_to_round_off(arm, along, term, linear, nonlinear, jitter) -> None:
-    """The torque is the term's own SymPy expression, sample by sample in plain Python, of smoothed speeds."""
+    """The torque is the term's own SymPy expression, sample by sample in plain Python, of smoothed speeds.
+
+    What raises friction's level builds up after a reversal, as that level does.
+    """
     time, joint = instants(125.0, jitter, 5.0), 1
     q = along(time)[0]
     qd = calm_speeds(arm.recording(time, np.zeros((len(time), 3))))
     steps = np.diff(time, prepend=time[0] - np.median(np.diff(time)))
-    values = linear | nonlinear | {"width": WIDTH}
+    defaults = {n: p.default for n, p in CATALOGUE[term].parameters.items()}
+    values = defaults | linear | nonlinear | {"width": WIDTH}
     none = np.zeros(len(time))
-    torque = np.zeros((len(time), 3))
-    torque[:, joint] = torque_by_hand(term, values, q[:, joint], qd[:, joint], none, none + 35, steps)
-    rows = make_rows(arm.recording(time, torque), arm.setup)
-    space, explained = arm.setup.space, np.zeros(len(rows))
+    own = torque_by_hand(term, values, q[:, joint], qd[:, joint], none, none + 35, steps)
+    space, mine = arm.setup.space, []
     for k, column in enumerate(space.own):
         same = {n: v for n, v in column.values if n != "width"} == nonlinear
         if column.term == term and same and not column.soft:
-            explained += rows.columns[joint][:, len(space.seen[joint]) + k] * linear[column.parameter]
+            mine.append((k, column))
+    if mine[0][1].builds_up:
+        level = {"Fc": 1.0, "A": 1.0, "width": WIDTH, **next(c.value for c in space.own if c.short)}
+        sign, missing = (
+            torque_by_hand(x, level, q[:, joint], qd[:, joint], none, none, steps)
+            for x in ("coulomb", "presliding")
+        )
+        own = own * (sign + missing) * sign
+    torque = np.zeros((len(time), 3))
+    torque[:, joint] = own
+    rows = make_rows(arm.recording(time, torque), arm.setup)
+    explained = np.zeros(len(rows))
+    for k, column in mine:
+        explained += rows.columns[joint][:, len(space.seen[joint]) + k] * linear[column.parameter]
     assert rms(rows.torque[:, joint]) > 0.05
     np.testing.assert_allclose(explained, rows.torque[:, joint], atol=1e-9 * np.abs(torque).max())
 
@@ -141,10 +158,14 @@ def test_a_delay_is_the_torques_slope_at_its_own_instant(arm, along, k) -> None:
 def test_a_current_that_comes_late_on_one_joint(arm, along, k) -> None:
     time, delay, joint = instants(500.0), DELAYS[k], 1
     dry, viscous = arm.setup.friction[joint]
+    short = next(c.value for c in arm.setup.space.own if c.short)
 
     def friction_at(t):
-        speed = along(t)[1][:, joint]
-        return dry * np.sign(speed) + viscous * speed
+        """A Coulomb level that builds up after a reversal, as in every gear, and drag."""
+        (q, speed), none = (x[:, joint] for x in along(t)[:2]), np.zeros(len(t))
+        steps = np.diff(t, prepend=t[0] - t[1] + t[0])
+        missing = torque_by_hand("presliding", {"A": dry, **short}, q, speed, none, none, steps)
+        return dry * np.sign(speed) + missing + viscous * speed
 
     late, there = (arm.observer.inverse_dynamics(*along(t)) for t in (time - delay, time))
     late[:, joint] += friction_at(time - delay)

@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 from effect_runs import POSE, QUIET, ROBOT, change, only, rms
 
+from residuum.codegen.columns import columns
 from residuum.virtual import Plant, simulate
 from residuum.virtual import effects as e
+from residuum.virtual.friction import curves
 from residuum.virtual.motions import join, move, point_to_point, small_reversals, sweep
-from residuum.virtual.plant import Thermal
+from residuum.virtual.plant import BaseFriction, Thermal
 
 FRICTION_SHAPES = {
     "coulomb_friction": (e.CoulombFriction(joint=2, torque=2.0), lambda v: 2.0 * np.sign(v)),
@@ -111,6 +113,17 @@ def test_velocity_lag_shows_at_reversals():
     rows = [simulate(ROBOT, Plant(**QUIET, velocity_lag=p), motion).truth.rows for p in ((), effect)]
     flips = [np.flatnonzero((r.friction[:-1, 0] > 0) & (r.friction[1:, 0] <= 0))[-1] * 0.002 for r in rows]
     assert 0.004 < flips[1] - flips[0] < 0.03
+
+
+def test_a_late_sign_is_what_the_term_says():
+    """The simulator shares no formula with the term, whose jump builds up over a travel as well."""
+    c = change(QUIET, velocity_lag=(e.VelocityLag(joint=2, lag=0.015),))
+    none, dt = np.zeros_like(c.qd), np.full(len(c.qd), 0.002)
+    own, late = c.torque[:, 1], columns("lag", {"lag": 0.015}, none, c.qd, none, None, dt)["A"][:, 1]
+    size = own @ late / (late @ late)
+    assert rms(own - size * late) ** 2 < 0.2 * rms(own) ** 2
+    level = curves(ROBOT, BaseFriction())[1].high
+    assert 0.6 * level < size < level
 
 
 def test_tooth_defect_is_a_narrow_bump():
