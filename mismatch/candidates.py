@@ -15,6 +15,7 @@ from .columns import (
     GAPS,
     GRIDS,
     LATE,
+    LATE_FRICTION,
     NO_PHYSICS,
     ORDERS,
     REPEAT,
@@ -87,6 +88,7 @@ def own_columns(gear: float) -> tuple[Column, ...]:
     found += [Column(SLACK, "gap", (("gap", x),)) for x in GAPS]
     found += [Column(WINDUP, "torque", (("stiffness", x),)) for x in STIFFNESSES]
     found += [Column(LATE, "d", (("around", x),)) for x in DELAYS]
+    found.append(Column(LATE_FRICTION, "d", (("around", DELAYS[-1]),)))
     found += [Column("ripple", p, (("n", k * gear),)) for k in ORDERS for p in ("A", "B")]
     found.append(Column(REPEAT, "rho"))
     return tuple(found)
@@ -120,11 +122,12 @@ Groups = dict[tuple[str, tuple[tuple[str, float], ...]], list[int]]
 
 @dataclass(frozen=True)
 class Candidates:
-    """All hypotheses and the directions that their columns number."""
+    """All hypotheses and the directions that their columns number; by joint the curve and late friction."""
 
     directions: Directions
     each: tuple[Candidate, ...]
-    curve: tuple[tuple[int, ...], ...]  # of each joint
+    curve: tuple[tuple[int, ...], ...]
+    late_friction: tuple[tuple[int, ...], ...]
 
 
 def candidates(
@@ -192,14 +195,18 @@ def candidates(
             at = add(unit[space.common_index(name)], common_std["lacking"])
             each.append(Candidate(effect, None, (at,), positive=True))
     _inertial(space, physics, base_std, add, each)
-    curve = []
-    for j in range(space.dof):
-        own = [k for k, c in enumerate(space.own) if c.term == "curve"]
-        curve.append(tuple(add(unit[space.own_index(j, k)], own_std[j, k]) for k in own))
+
+    def described(term: str) -> tuple[tuple[int, ...], ...]:
+        mine = [k for k, c in enumerate(space.own) if c.term == term]
+        return tuple(
+            tuple(add(unit[space.own_index(j, k)], own_std[j, k]) for k in mine) for j in range(space.dof)
+        )
+
+    curve, late_friction = described("curve"), described(LATE_FRICTION)
     directions = Directions(
         sparse.csc_matrix(np.stack(vectors, axis=1)), np.array(std), np.zeros(len(std), bool)
     )
-    return Candidates(directions, tuple(each), tuple(curve))
+    return Candidates(directions, tuple(each), curve, late_friction)
 
 
 def _neighbours(

@@ -84,12 +84,14 @@ STIFFNESSES = tuple(float(f"{x:.3g}") for x in np.geomspace(3e3, 4e4, 12))
 #: is the delay.
 LATE = "late"
 DELAYS = (0.005, 0.015)
+#: The column of friction alone that comes late, no term either: a late current brings all of the torque late.
+LATE_FRICTION = "late friction"
 #: The column of what the reference's model left where the reference did the same; no term either.
 REPEAT = "repeat"
 #: Columns that only a finding frees: what every model holds anyway does not include them.
-BY_NAME = (WINDUP, LATE)
-#: Columns that describe and are no physics.
-NO_PHYSICS = ("curve", REPEAT)
+BY_NAME = (WINDUP, LATE, LATE_FRICTION)
+#: Columns that describe and are no physics, or tell names apart.
+NO_PHYSICS = ("curve", REPEAT, LATE_FRICTION)
 
 #: Terms with one entry for each value of their grid; order is that of the columns.
 TERMS = (

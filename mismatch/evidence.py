@@ -13,7 +13,19 @@ from ..recordings import Recording
 from ..robots import Robot
 from ..robots.model import Model
 from .candidates import Candidates, candidates, curve_columns, own_columns
-from .columns import BASELINE, BY_NAME, LATE, REPEAT, SLACK, WIDTH, WINDUP, Column, Space, space_of
+from .columns import (
+    BASELINE,
+    BY_NAME,
+    LATE,
+    LATE_FRICTION,
+    REPEAT,
+    SLACK,
+    WIDTH,
+    WINDUP,
+    Column,
+    Space,
+    space_of,
+)
 from .flexible import ranges
 from .grams import Fold, Scales, equal_scales, evenly, folds_of, scales_of, whole
 from .lacking import SHARE, dropped_of, frozen_of, widths
@@ -113,7 +125,7 @@ def gather(
     common_std = {
         "encoder": 0.05, "elasticity": 1e-3, "tilt": 0.2, "delay": 0.05, "lacking": SHARE,
     }  # fmt: skip
-    own_std[:, [c.term == LATE for c in setup.space.own]] = common_std["delay"]
+    own_std[:, [c.term in (LATE, LATE_FRICTION) for c in setup.space.own]] = common_std["delay"]
     changed = not all(sides)
     swings = seen(of_links(physics, base, q[::50]))
     found = candidates(

@@ -25,6 +25,7 @@ from .plausibility import (
     misshapen,
     near_zero,
     of_all_joints,
+    of_friction,
     peakless,
 )  # fmt: skip
 from .selection import Directions
@@ -161,8 +162,11 @@ def judge(
         test, weighed = tested(evidence, fitted, best.candidate)
         test = beside_firm(weighed, fitted, test)
         part = share_of(weighed, fitted, test)
+        if why := of_friction(weighed, fitted, test):
+            hollow.add(best.candidate.key)
         why = (
-            objection(test, part)
+            why
+            or objection(test, part)
             or implausible(evidence, test)
             or shadow(test, accepted, evidence.setup.space.dof)
             or bodiless(weighed, fitted, test)
@@ -180,7 +184,7 @@ def judge(
             why, curve = misshapen(weighed, fitted, test)
             bent += curve
         if not why and (why := yardstick.objection(weighed, fitted, test)):
-            model = evidence.found.directions.take(best.candidate.columns) + model
+            model = evidence.found.directions.take(test.candidate.columns) + model
         if why:
             refused.append((test, why))
             continue

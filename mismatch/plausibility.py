@@ -124,6 +124,16 @@ def of_all_joints(weighed: Evidence, model: Directions, test: Scored) -> str:
     return everyones(_lateness(test, level), max(theirs, default=0.0))
 
 
+def of_friction(weighed: Evidence, model: Directions, test: Scored) -> str:
+    """Return in words that friction alone is late, and not the current with all it carries; or nothing."""
+    c = test.candidate
+    if c.effect != "time_delay" or c.joint is None:
+        return ""
+    alone = Candidate("velocity_lag", c.joint, weighed.found.late_friction[c.joint])
+    lead = scored(weighed, model, [alone])[0].evidence - test.evidence
+    return f"friction alone that is late explains {lead:.0f} nats more" if lead >= APART else ""
+
+
 def _lateness(lag: Scored, level: Array) -> float:
     """Return the time (s) by which a joint's Coulomb level as a whole is late; level (N,) Nm."""
     c = lag.candidate

@@ -16,7 +16,7 @@ from ..identify.kernel import Filter, Kernel, batches, portions, segments
 from ..identify.rows import GAP, REST
 from ..recordings import Recording
 from . import signs
-from .columns import DELAYS, LATE, REPEAT, WIDTH, Space
+from .columns import DELAYS, LATE, LATE_FRICTION, REPEAT, WIDTH, Space
 from .fast import Fast, fast_band
 from .flexible import curves
 from .gears import held
@@ -110,6 +110,8 @@ def _own(track: Track, part: slice, setup: Setup) -> Array:
         elif c.term == LATE:
             around = c.value["around"]
             found.append(_late(track, part, swift, around, True) + _late(track, part, friction, around))
+        elif c.term == LATE_FRICTION:
+            found.append(_late(track, part, friction, c.value["around"]))
         elif remembers(c.term):
             found.append(track.held[part, :, place])
             place += 1
