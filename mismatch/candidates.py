@@ -155,9 +155,9 @@ def candidates(
         groups: Groups = {}
         for k, c in enumerate(space.own):
             if c.term not in NO_PHYSICS and not c.soft:
-                builds = c.usual and c.term == "coulomb"
-                parts = [k, *(i for i, x in enumerate(space.own) if x.short and builds)]
-                at = add(unit[[space.own_index(j, i) for i in parts]].sum(axis=0), own_std[j, k])
+                # a changed level builds up over the same short travel
+                level = [i for i, x in enumerate(space.own) if x.short and c.term == "coulomb"]
+                at = add(unit[[space.own_index(j, i) for i in (k, *level)]].sum(axis=0), own_std[j, k])
                 groups.setdefault((c.term, c.values), []).append(at)
         gaps = _neighbours(groups, SLACK, ("gap", "wider"), GAPS)
         if load[j, 0] < 0 < load[j, 1]:

@@ -49,7 +49,7 @@ class Column:
         A narrow fall is not: it also stands for gears that start gently by their speed.
         """
         narrow = self.term == "stribeck" and self.value["vs"] <= NARROW
-        return self.term in LEVELS and self.parameter != "kv" and not narrow
+        return self.term in RAISED and self.parameter != "kv" and not narrow
 
     @property
     def usual(self) -> bool:
@@ -101,8 +101,8 @@ TERMS = (
 
 #: rad/s; every gear differs by much from Coulomb's law where it is slower than this.
 NARROW = 0.02
-#: Terms that make friction's level higher, beside Coulomb's.
-LEVELS = ("stribeck", "load_dependent", "temperature_dependent", "position_dependent")
+#: Terms that raise the level that friction has while it slides.
+RAISED = ("stribeck", "load_dependent", "temperature_dependent", "position_dependent")
 #: Terms that are fitted whatever is found.
 BASELINE = ("coulomb", "viscous")
 #: rad/s; width of the smooth sign: far below the terms' default, whose tail reaches far into slow motion.

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from . import yardstick
-from .acceptance import EVIDENCE, STEADY, objection
+from .acceptance import EVIDENCE, objection
 from .bodies import bodiless
 from .candidates import Candidate, Key
 from .coverage import SLOW
@@ -15,7 +15,7 @@ from .evidence import Evidence
 from .firm import beside_firm
 from .local import at_one_place
 from .masses import BODIES, INERTIAL, MASSES_OFF, Refusals, all_off, unmoved
-from .naming import APART, Scored, chosen, nuisance, ranked, scored, steadiness, tested
+from .naming import Scored, chosen, nuisance, ranked, scored, steadiness
 from .pace import paceless
 from .plausibility import (
     NEAR_ZERO,
@@ -30,15 +30,14 @@ from .plausibility import (
 )  # fmt: skip
 from .selection import Directions
 from .share import share_of
+from .simplest import likelier, simplest, told_apart
 
-#: A rival is told apart by APART, and by a steady lead where that is less than this share of the evidence.
-CLOSE = 0.05
 #: A rival explains at least this share of what the best does.
 RELATED = 0.2
 #: Less than this share of a found effect's evidence, on its joints, is what that effect's own form leaves.
 SHADOW = 0.1
-#: Of what friction does around zero speed, which is known to less; and told apart from each other by more.
-NEAR_SHADOW, NEAR_CLOSE = 0.3, 0.25
+#: Of what friction does around zero speed, which is known to less.
+NEAR_SHADOW = 0.3
 #: What raises friction around zero speed, and so what builds up there over a short travel: by as much, given
 #: what a peak's grid leaves of it.
 LEVELS, _RISEN = ("stribeck", "coulomb_friction"), 2.0
@@ -61,15 +60,6 @@ MASSES = ("payload", "link_inertial", "base_free")
 ALL_OF_IT = 0.9
 #: Bodies that are tried as the first of two.
 _BODIES = 3
-#: Names that come before one which they cannot be told apart from.
-_FIRST = {
-    "link_inertial": ("payload",),
-    "temperature_dependent_friction": ("coulomb_friction", "viscous_friction"),
-    "cable_spring": ("current_offset", "friction_asymmetry"),
-    "nonlinear_viscous": ("viscous_friction",),
-}
-#: And before one of these terms: drag by the root of speed is a Stribeck fall's tail.
-_BEFORE_TERM = {"power": ("stribeck",)}
 #: Findings and attempts at most.
 MOST, TRIES = 12, 24
 #: Without a reference: fitted anyway, or only a matter of which masses are believed.
@@ -154,12 +144,13 @@ def judge(
         if not told:
             break
         best = likelier(bodies_first(order, partial(_best_beside, evidence, fitted)))
-        barred.add(best.candidate.key)
         if why := implausible(evidence, best):
+            barred.add(best.candidate.key)
             hollow.add(best.candidate.key)
             refused.append((best, why))
             continue
-        test, weighed = tested(evidence, fitted, best.candidate)
+        best, test, weighed = simplest(evidence, fitted, best, order)
+        barred.add(best.candidate.key)
         test = beside_firm(weighed, fitted, test)
         part = share_of(weighed, fitted, test)
         if why := of_friction(weighed, fitted, test):
@@ -170,7 +161,6 @@ def judge(
             or implausible(evidence, test)
             or shadow(test, accepted, evidence.setup.space.dof)
             or bodiless(weighed, fitted, test)
-            or of_all_joints(weighed, fitted, test)
             or at_one_place(weighed, fitted, test)
             or paceless(weighed, fitted, test)
             or peakless(weighed, fitted, test)
@@ -183,8 +173,10 @@ def judge(
         if not why:
             why, curve = misshapen(weighed, fitted, test)
             bent += curve
-        if not why and (why := yardstick.objection(weighed, fitted, test)):
-            model = evidence.found.directions.take(test.candidate.columns) + model
+        if not why:
+            why = of_all_joints(weighed, fitted, test) or yardstick.objection(weighed, fitted, test)
+            if why:
+                model = evidence.found.directions.take(test.candidate.columns) + model
         if why:
             refused.append((test, why))
             continue
@@ -213,33 +205,12 @@ def _best_beside(evidence: Evidence, model: Directions, body: Candidate, others:
     return max((s.evidence for s in scored(evidence, chosen(model, evidence, body), others)), default=0.0)
 
 
-def likelier(order: Sequence[Scored]) -> Scored:
-    """Return the best hypothesis, but a load where a changed link explains no more: links rarely change.
-
-    And a level, or straight drag, where a change with temperature or angle, or bent drag, explains no more.
-    """
-    best = order[0]
-    first = list(_FIRST.get(best.candidate.effect, ()))
-    first += [name for term in best.candidate.terms for name in _BEFORE_TERM.get(term, ())]
-    here = (s for s in order if s.candidate.joint in (None, best.candidate.joint))
-    return next((s for s in here if s.candidate.effect in first and not told_apart(best, s)), best)
-
-
-def told_apart(best: Scored, other: Scored) -> bool:
-    """Return whether one hypothesis is better than another by more than what recordings like these decide."""
-    lead = best.evidence - other.evidence
-    if near_zero(best.candidate) and near_zero(other.candidate):
-        return lead >= max(APART, NEAR_CLOSE * best.evidence)
-    unsteady = steadiness(best.gain - other.gain) < STEADY
-    return not (lead < APART or (lead < CLOSE * best.evidence and unsteady))
-
-
 def shadow(test: Scored, accepted: Sequence[Accepted], joints: int) -> str:
     """Return in words that a hypothesis is what a found effect's own form leaves, or nothing. joints: N."""
     c = test.candidate
     for a in accepted:
         first = a.score.candidate
-        late = first.effect == "time_delay" and first.joint in (None, c.joint)
+        late = first.effect == "time_delay" and first.joint in (None, c.joint) and a.score.size[-1] > 0
         if first.effect == c.effect == "time_delay":
             return "is in what the clock's delay leaves"
         if late and (c.effect == "velocity_lag" or is_short(c)):

@@ -41,6 +41,7 @@ BARE = 1e-4
 #: Nats by which one of two hypotheses leads that are told apart: odds of e^5 = 150.
 APART = 5.0
 #: Nats of a swing: drives and stick-slip swing as well, at some frequency; below it a soft gear may only lag.
+#: And of a late sign without a reference: gears differ around standstill.
 CLEAR = 100.0
 
 
@@ -232,10 +233,10 @@ def _consistency(whole: Eliminated, out: Sequence[Eliminated], columns: Sequence
 
 def ranked(evidence: Evidence, model: Directions, skip: Sequence[str] = ()) -> list[Scored]:
     """Return every hypothesis at its best nonlinear value as an addition to a model, best first."""
-    return _at_best(evidence, model, [c for c in evidence.found.each if c.effect not in skip])
+    return at_best(evidence, model, [c for c in evidence.found.each if c.effect not in skip])
 
 
-def _at_best(evidence: Evidence, model: Directions, some: Sequence[Candidate]) -> list[Scored]:
+def at_best(evidence: Evidence, model: Directions, some: Sequence[Candidate]) -> list[Scored]:
     """Return the conceivable ones of some hypotheses at their best nonlinear values, best first."""
     best: dict[Key, Scored] = {}
     for s in scored(evidence, model, some):
@@ -252,7 +253,7 @@ def tested(evidence: Evidence, model: Directions, candidate: Candidate) -> tuple
     At the nonlinear value that is best by these weights: before, what it explains was taken for noise.
     """
     weighed = reweighed(evidence, chosen(model, evidence, candidate))
-    found = _at_best(weighed, model, of_key(evidence.found.each, candidate.key))
+    found = at_best(weighed, model, of_key(evidence.found.each, candidate.key))
     if found and found[0].candidate != candidate:
         candidate = found[0].candidate
         weighed = reweighed(evidence, chosen(model, evidence, candidate))

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from .candidates import Candidate
 from .evidence import Evidence
 from .flexible import names
-from .naming import APART, Scored, chosen, scored
+from .naming import APART, CLEAR, Scored, chosen, scored
 from .peaks import peak
 from .refit import parameters
 from .selection import Directions
@@ -110,11 +110,13 @@ def peakless(weighed: Evidence, model: Directions, test: Scored) -> str:
 def of_all_joints(weighed: Evidence, model: Directions, test: Scored) -> str:
     """Return in words that a late sign is that of the other joints as well, or nothing.
 
-    A reference holds what is everyone's.
+    A reference holds what is everyone's; without one, gears differ by some of it around standstill.
     """
     c, level = test.candidate, weighed.setup.friction[:, 0]
     if c.effect != "velocity_lag" or c.joint is None or weighed.has_reference:
         return ""
+    if test.evidence < CLEAR:
+        return f"evidence {test.evidence:.1f} nats, {CLEAR:.0f} asked of a late sign without a reference"
     lags = [x for x in weighed.found.each if x.effect == c.effect and x.joint != c.joint]
     theirs = [
         _lateness(s, level)

@@ -8,11 +8,12 @@ import pytest
 
 from residuum.mismatch.acceptance import EVIDENCE, LARGE, SHARE, objection
 from residuum.mismatch.candidates import Candidate
-from residuum.mismatch.judging import Accepted, bodies_first, likelier, shadow, told_apart
+from residuum.mismatch.judging import Accepted, bodies_first, shadow
 from residuum.mismatch.masses import unmoved
 from residuum.mismatch.naming import APART, Scored
 from residuum.mismatch.plausibility import SYNCHRONOUS, everyones, implausible
 from residuum.mismatch.share import Share
+from residuum.mismatch.simplest import likelier, told_apart
 
 HERE = Candidate("stribeck", 1, (0,))
 HALF = Share(0.3, 0.3)
