@@ -19,7 +19,6 @@ from .columns import (
     NO_PHYSICS,
     ORDERS,
     REPEAT,
-    SHORT,
     SLACK,
     SOFT,
     STIFFNESSES,
@@ -154,7 +153,7 @@ def candidates(
     for j in range(space.dof):
         groups: Groups = {}
         for k, c in enumerate(space.own):
-            if c.term not in NO_PHYSICS and not c.soft:
+            if c.term not in NO_PHYSICS and not c.soft and not c.short:
                 # a changed level builds up over the same short travel
                 level = [i for i, x in enumerate(space.own) if x.short and c.term == "coulomb"]
                 at = add(unit[[space.own_index(j, i) for i in (k, *level)]].sum(axis=0), own_std[j, k])
@@ -169,8 +168,6 @@ def candidates(
             if ends[1][1] <= swings[j]
         ]
         for (term, values), columns in groups.items():
-            if dict(values).get("zs", SHORT) < SHORT:
-                continue
             with_it = set(_BESIDE.get(term, ())) - fitted
             beside = [x for (t, _), some in groups.items() if t in with_it for x in some]
             most = LATE_LEVEL * levels[j] if term == "lag" else np.inf
