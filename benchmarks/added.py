@@ -142,9 +142,10 @@ def _possible(evidence: Evidence, effect: str, sight: "_Sight") -> list[Candidat
     """Return an effect's candidates that are visible at the largest size within twice their prior width.
 
     No gear is as soft as a light wrist would need, and free masses take nearly all of an encoder's offset.
+    A gear that swings does so as its stiffness makes it and cannot be brought to a size: wind-up is slow here.
     """
     found = []
-    for c in (c for c in evidence.found.each if c.effect == effect):
+    for c in (c for c in evidence.found.each if c.effect == effect and not c.whole):
         if effect == "time_delay" and c.joint is not None:  # a clock's, which moves all
             continue
         directions = evidence.found.directions.take(c.columns)
