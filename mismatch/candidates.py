@@ -150,13 +150,14 @@ def candidates(
 
     unit = np.eye(space.size)
     fitted = set() if changed else set(BASELINE)  # what is free anyway
+    short = [k for k, c in enumerate(space.own) if c.short]
     for j in range(space.dof):
         groups: Groups = {}
         for k, c in enumerate(space.own):
             if c.term not in NO_PHYSICS and not c.soft and not c.short:
                 # a changed level builds up over the same short travel
-                level = [i for i, x in enumerate(space.own) if x.short and c.term == "coulomb"]
-                at = add(unit[[space.own_index(j, i) for i in (k, *level)]].sum(axis=0), own_std[j, k])
+                parts = [k, *short] if c.term == "coulomb" else [k]
+                at = add(unit[[space.own_index(j, i) for i in parts]].sum(axis=0), own_std[j, k])
                 groups.setdefault((c.term, c.values), []).append(at)
         gaps = _neighbours(groups, SLACK, ("gap", "wider"), GAPS)
         if load[j, 0] < 0 < load[j, 1]:
@@ -173,24 +174,7 @@ def candidates(
             most = LATE_LEVEL * levels[j] if term == "lag" else np.inf
             positive = term in _POSITIVE
             each.append(Candidate(_PLAIN[term], j, (*columns, *beside), values, (term,), positive, most=most))
-    for kind, effect in (("encoder", "encoder_offset"), ("elasticity", "joint_elasticity")):
-        for j in range(space.dof):
-            at = add(unit[space.common_index(f"{kind}{j + 1}")], common_std[kind])
-            each.append(Candidate(effect, j, (at,), positive=kind != "encoder"))
-    tilt = [add(unit[space.common_index(x)], common_std["tilt"]) for x in ("roll", "pitch")]
-    each.append(Candidate("base_tilt", None, tuple(tilt)))
-    for k, delay in enumerate(DELAYS):
-        steady, late, swift = (
-            add(unit[space.common_index(f"{x}{k + 1}")], common_std["delay"])
-            for x in ("delay", "reversal", "jerk")
-        )
-        for jerk, torque in ((0.0, steady), (1.0, swift)):
-            values = ("around", delay), ("jerk", jerk)
-            each.append(Candidate("time_delay", None, (torque, late), values))
-    for name, effect in ((FROZEN, "frozen_joint_coupling"), (DROPPED, "dropped_coupling")):
-        if name in space.common:
-            at = add(unit[space.common_index(name)], common_std["lacking"])
-            each.append(Candidate(effect, None, (at,), positive=True))
+    _of_all_joints(space, common_std, add, each)
     _inertial(space, physics, base_std, add, each)
 
     def described(term: str) -> tuple[tuple[int, ...], ...]:
@@ -213,6 +197,31 @@ def _neighbours(
     columns = [groups.pop((term, ((names[0], x),)), []) for x in values]
     ends = [tuple(zip(names, both, strict=True)) for both in pairwise(values)]
     return [((*a, *b), named) for (a, b), named in zip(pairwise(columns), ends, strict=True)]
+
+
+def _of_all_joints(
+    space: Space, common_std: dict[str, float], add: Callable[[Array, float], int], each: list[Candidate]
+) -> None:
+    """Directions of what acts on all joints and is no body: encoders, soft gears, base, clock, couplings."""
+    unit = np.eye(space.size)
+    for kind, effect in (("encoder", "encoder_offset"), ("elasticity", "joint_elasticity")):
+        for j in range(space.dof):
+            at = add(unit[space.common_index(f"{kind}{j + 1}")], common_std[kind])
+            each.append(Candidate(effect, j, (at,), positive=kind != "encoder"))
+    tilt = [add(unit[space.common_index(x)], common_std["tilt"]) for x in ("roll", "pitch")]
+    each.append(Candidate("base_tilt", None, tuple(tilt)))
+    for k, delay in enumerate(DELAYS):
+        steady, late, swift = (
+            add(unit[space.common_index(f"{x}{k + 1}")], common_std["delay"])
+            for x in ("delay", "reversal", "jerk")
+        )
+        for jerk, torque in ((0.0, steady), (1.0, swift)):
+            values = ("around", delay), ("jerk", jerk)
+            each.append(Candidate("time_delay", None, (torque, late), values))
+    for name, effect in ((FROZEN, "frozen_joint_coupling"), (DROPPED, "dropped_coupling")):
+        if name in space.common:
+            at = add(unit[space.common_index(name)], common_std["lacking"])
+            each.append(Candidate(effect, None, (at,), positive=True))
 
 
 def _inertial(

@@ -29,7 +29,7 @@ from .plausibility import (
     peakless,
 )  # fmt: skip
 from .selection import Directions
-from .share import share_of
+from .share import Share, share_of
 from .simplest import likelier, simplest, told_apart
 
 #: A rival explains at least this share of what the best does.
@@ -155,16 +155,7 @@ def judge(
         part = share_of(weighed, fitted, test)
         if why := of_friction(weighed, fitted, test):
             hollow.add(best.candidate.key)
-        why = (
-            why
-            or objection(test, part)
-            or implausible(evidence, test)
-            or shadow(test, accepted, evidence.setup.space.dof)
-            or bodiless(weighed, fitted, test)
-            or at_one_place(weighed, fitted, test)
-            or paceless(weighed, fitted, test)
-            or peakless(weighed, fitted, test)
-        )
+        why = why or _refused(weighed, fitted, test, part, accepted)
         tries += 1
         if why and not (accepted or bent):
             early[best.candidate.key] = best.evidence, test, why
@@ -184,6 +175,21 @@ def judge(
         accepted.append(Accepted(test, alike, rivals, part.explained))
         model = chosen(model, evidence, test.candidate)
     return Judged(tuple(accepted), model, tuple(refused), masses[0])
+
+
+def _refused(
+    weighed: Evidence, model: Directions, test: Scored, part: Share, accepted: Sequence[Accepted]
+) -> str:
+    """Return in words why a tested hypothesis is no name; part: what it explains of what is left."""
+    return (
+        objection(test, part)
+        or implausible(weighed, test)
+        or shadow(test, accepted, weighed.setup.space.dof)
+        or bodiless(weighed, model, test)
+        or at_one_place(weighed, model, test)
+        or paceless(weighed, model, test)
+        or peakless(weighed, model, test)
+    )
 
 
 def bodies_first(order: list[Scored], beside: Callable[[Candidate, list[Candidate]], float]) -> list[Scored]:

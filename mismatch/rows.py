@@ -97,8 +97,8 @@ def _own(track: Track, part: slice, setup: Setup) -> Array:
     found, place = list[Array](), 0
     cache: dict[tuple[str, tuple[tuple[str, float], ...]], dict[str, Array]] = {}
     direction = signs.sign(track.qd[part], WIDTH)
-    built = _built_up(track, part, setup, direction)
-    friction, swift = _friction(track, part, setup), track.swift[part]
+    built = _built_up(track, part, setup)
+    friction, slides, swift = _friction(track, part, setup, built), built * direction, track.swift[part]
     drive = track.motor[part] + friction
     for c in setup.space.own:
         if c.term == "gain":
@@ -122,7 +122,7 @@ def _own(track: Track, part: slice, setup: Setup) -> Array:
                     c.term, dict(c.values), track.q[part], track.qd[part], track.load[part],
                     track.temperature[part], np.ones(len(direction)),
                 )  # fmt: skip
-            found.append(cache[key][c.parameter] * (built * direction if c.builds_up else 1.0))
+            found.append(cache[key][c.parameter] * (slides if c.builds_up else 1.0))
     if setup.limits is not None:
         found += curves(
             track.q[part], track.qd[part], track.load[part], track.temperature[part], track.since[part],
@@ -131,19 +131,18 @@ def _own(track: Track, part: slice, setup: Setup) -> Array:
     return np.stack(found, axis=2)
 
 
-def _friction(track: Track, part: slice, setup: Setup) -> Array:
-    """Friction (T, N) that the setup expects, Nm; its level builds up over a short travel."""
-    qd = track.qd[part]
-    level = _built_up(track, part, setup, signs.sign(qd, WIDTH))
-    return np.asarray(setup.friction[:, 0] * level + setup.friction[:, 1] * qd, np.float64)
+def _friction(track: Track, part: slice, setup: Setup, built: Array) -> Array:
+    """Friction (T, N) that the setup expects, Nm; built (T, N): the part of its level that pushes."""
+    return np.asarray(setup.friction[:, 0] * built + setup.friction[:, 1] * track.qd[part], np.float64)
 
 
-def _built_up(track: Track, part: slice, setup: Setup, direction: Array) -> Array:
+def _built_up(track: Track, part: slice, setup: Setup) -> Array:
     """Part (T, N), -1..1, of friction's level that pushes: it builds up over a short travel."""
+    built = signs.sign(track.qd[part], WIDTH)
     for k, column in enumerate(c for c in setup.space.own if remembers(c.term)):
         if column.short:
-            direction = direction + track.held[part, :, k]
-    return direction
+            built = built + track.held[part, :, k]
+    return built
 
 
 def _late(track: Track, part: slice, torque: Array, delay: float, centred: bool = False) -> Array:
@@ -176,7 +175,7 @@ def _common(track: Track, part: slice, setup: Setup) -> tuple[Array, Array]:
         moved.append(np.zeros_like(load))
         kept.append(turned[:, :, k])
     # what friction does at reversals depends on more than the clock, so it gets a coefficient of its own
-    friction = _friction(track, part, setup)
+    friction = _friction(track, part, setup, _built_up(track, part, setup))
     for torque, noisy in ((track.steady[part], True), (friction, False), (track.swift[part], True)):
         for delay in DELAYS:
             moved.append(np.zeros_like(load))

@@ -31,6 +31,12 @@ def torque_by_hand(term, values, q, qd, load, temperature, dt) -> np.ndarray:
     return np.array(found)
 
 
+def built_up_by_hand(values, q, qd, dt) -> np.ndarray:
+    """Part (T,), -1..1, of a Coulomb level that pushes: of coulomb and presliding together. values: zs, width."""
+    unit, none = {"Fc": 1.0, "A": 1.0, **values}, 0 * qd
+    return sum(torque_by_hand(x, unit, q, qd, none, none, dt) for x in ("coulomb", "presliding"))
+
+
 def motion(samples: int, joints: int, seed: int = 0) -> dict:
     """A motion with reversals, rests, uneven steps and a load that changes sign: arrays (T, N), dt (T,)."""
     random = np.random.default_rng(seed)

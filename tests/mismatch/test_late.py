@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from terms_by_hand import torque_by_hand
+from terms_by_hand import built_up_by_hand
 
 from residuum.mismatch.candidates import of_key
 from residuum.mismatch.evidence import gather
@@ -18,10 +18,9 @@ def tested(arm, along):
     time = np.arange(0.0, 60.0, STEP)
     q, qd, qdd = along(time)
     rigid = arm.observer.inverse_dynamics(q, qd, qdd)
-    friction, values = 2.0 * qd, {"Fc": 5.0, "A": 5.0, "zs": 3e-4, "width": 1e-4}
+    friction, steps = 2.0 * qd, np.full(len(time), STEP)
     for j in range(3):
-        inputs = q[:, j], qd[:, j], 0 * time, 0 * time, np.full(len(time), STEP)
-        friction[:, j] += sum(torque_by_hand(x, values, *inputs) for x in ("coulomb", "presliding"))
+        friction[:, j] += 5.0 * built_up_by_hand({"zs": 3e-4, "width": 1e-4}, q[:, j], qd[:, j], steps)
 
     def of(what: str):
         torque, samples = rigid + friction, round(LATE / STEP)

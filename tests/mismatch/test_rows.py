@@ -3,7 +3,7 @@
 import mujoco
 import numpy as np
 import pytest
-from terms_by_hand import torque_by_hand
+from terms_by_hand import built_up_by_hand, torque_by_hand
 
 from residuum.mismatch.columns import DELAYS, LATE, WIDTH
 from residuum.mismatch.physics import forces, levers, tilts
@@ -74,12 +74,10 @@ def test_a_term_is_explained_to_round_off(arm, along, term, linear, nonlinear, j
         if column.term == term and same and not column.soft:
             mine.append((k, column))
     if mine[0][1].builds_up:
-        level = {"Fc": 1.0, "A": 1.0, "width": WIDTH, **next(c.value for c in space.own if c.short)}
-        sign, missing = (
-            torque_by_hand(x, level, q[:, joint], qd[:, joint], none, none, steps)
-            for x in ("coulomb", "presliding")
-        )
-        own = own * (sign + missing) * sign
+        short = next(c.value for c in space.own if c.short)
+        built = built_up_by_hand(short, q[:, joint], qd[:, joint], steps)
+        sign = torque_by_hand("coulomb", {"Fc": 1.0, **short}, q[:, joint], qd[:, joint], none, none, steps)
+        own = own * built * sign
     torque = np.zeros((len(time), 3))
     torque[:, joint] = own
     rows = make_rows(arm.recording(time, torque), arm.setup)
@@ -162,10 +160,9 @@ def test_a_current_that_comes_late_on_one_joint(arm, along, k) -> None:
 
     def friction_at(t):
         """A Coulomb level that builds up after a reversal, as in every gear, and drag."""
-        (q, speed), none = (x[:, joint] for x in along(t)[:2]), np.zeros(len(t))
+        q, speed = (x[:, joint] for x in along(t)[:2])
         steps = np.diff(t, prepend=t[0] - t[1] + t[0])
-        missing = torque_by_hand("presliding", {"A": dry, **short}, q, speed, none, none, steps)
-        return dry * np.sign(speed) + missing + viscous * speed
+        return dry * built_up_by_hand(short, q, speed, steps) + viscous * speed
 
     late, there = (arm.observer.inverse_dynamics(*along(t)) for t in (time - delay, time))
     late[:, joint] += friction_at(time - delay)
