@@ -43,6 +43,9 @@ LATE_LEVEL = 1.5
 #: Coefficients of what is there as a whole add up to one, or to this (damping and the arm's other joints take
 #: some of a swing); one of two may be below zero by this share of both.
 WHOLE, BEYOND = (0.6, 1.3), 0.2
+#: Of the wide prior of base parameters: how much a body may change them, by little or by much. A width that
+#: fits much would cost one that is a few percent off 30 nats.
+BY_LITTLE, BY_MUCH = 0.1, 3.0
 
 
 @dataclass(frozen=True)
@@ -121,10 +124,14 @@ Groups = dict[tuple[str, tuple[tuple[str, float], ...]], list[int]]
 
 @dataclass(frozen=True)
 class Candidates:
-    """All hypotheses and the directions that their columns number; by joint the curve and late friction."""
+    """All hypotheses and the directions that their columns number; by joint the curve and late friction.
+
+    unshown: those that the recordings cannot tell from others, so that they are in a class at best.
+    """
 
     directions: Directions
     each: tuple[Candidate, ...]
+    unshown: tuple[Candidate, ...]
     curve: tuple[tuple[int, ...], ...]
     late_friction: tuple[tuple[int, ...], ...]
 
@@ -141,7 +148,8 @@ def candidates(
     changed: sought is what changed since a reference: friction that came to depend on temperature is the old
     one at a temperature unknown.
     """
-    vectors, std, each = list[Array](), list[float](), list[Candidate]()
+    vectors, std = list[Array](), list[float]()
+    each, unshown = list[Candidate](), list[Candidate]()
 
     def add(vector: Array, width: float) -> int:
         vectors.append(vector)
@@ -175,6 +183,11 @@ def candidates(
             positive = term in _POSITIVE
             each.append(Candidate(_PLAIN[term], j, (*columns, *beside), values, (term,), positive, most=most))
     _of_all_joints(space, common_std, add, each)
+    for j, (least, most) in enumerate(load.tolist()):
+        if not least < 0 < most:  # the gear stays on one flank, and its link is behind by the gap
+            turned = unit[space.common_index(f"encoder{j + 1}")] * (-1.0 if least > 0 else 1.0)
+            at = add(turned, common_std["encoder"])
+            unshown.append(Candidate("backlash", j, (at,), positive=True, most=GAPS[-1]))
     _inertial(space, physics, base_std, add, each)
 
     def described(term: str) -> tuple[tuple[int, ...], ...]:
@@ -187,7 +200,7 @@ def candidates(
     directions = Directions(
         sparse.csc_matrix(np.stack(vectors, axis=1)), np.array(std), np.zeros(len(std), bool)
     )
-    return Candidates(directions, tuple(each), curve, late_friction)
+    return Candidates(directions, tuple(each), tuple(unshown), curve, late_friction)
 
 
 def _neighbours(
@@ -239,14 +252,11 @@ def _inertial(
         own = physics.map.links[:, 10 * link : 10 * link + 10]
         basis, sizes, _ = np.linalg.svd(own / base_std[:, None], full_matrices=False)
         # combinations in units of the priors of the base parameters that they change
-        columns = [
-            add(lifted(base_std * basis[:, i]), 3.0)
-            for i in range(len(sizes))
-            if sizes[i] > 1e-6 * max(sizes[0], 1e-12)
-        ]
+        some = [lifted(base_std * x) for x in basis.T[sizes > 1e-6 * max(sizes[0], 1e-12)]]
         effect = "payload" if link == n - 1 else "link_inertial"
-        if columns:
-            each.append(Candidate(effect, None if effect == "payload" else link, tuple(columns)))
+        for width in (BY_LITTLE, BY_MUCH) if some else ():
+            columns = tuple(add(x, width) for x in some)
+            each.append(Candidate(effect, None if effect == "payload" else link, columns))
     for j in range(n):
         each.append(Candidate("rotor_inertia", j, (add(lifted(physics.map.rotors[:, j]), 5.0),)))
     every = [add(lifted(np.eye(len(space.base))[:, i] * base_std[i]), 1.0) for i in range(len(space.base))]

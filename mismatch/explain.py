@@ -15,6 +15,7 @@ from ..recordings.report import AuditReport
 from ..robots import Robot
 from ..robots.model import Input, Model
 from ..symbolic.nominal import nominal_model
+from .amplifier import hidden_amplifiers
 from .answer import compose
 from .carried import Carried, carried, unloaded
 from .coverage import cannot_show
@@ -172,7 +173,8 @@ def _explained(
         model = with_thresholds(model, [recordings[r] for r in which], inflate, touched)
     parts = Parts(
         task.robot, nominal, sources, evidence, judged, sharp, found, runs, left, t.push, strange, proof,
-        before, after, rate, tuple(places), names, (*lacks, *concealed(judged.masses_off)), model,
+        before, after, rate, tuple(places), names,
+        (*lacks, *concealed(judged.masses_off), *hidden_amplifiers(weighed, judged)), model,
         _proposal(task, weighed, judged, progress), t.load, lighter,
     )  # fmt: skip
     return compose(parts)

@@ -5,7 +5,7 @@ A matched filter (Kay 1998, Fundamentals of Statistical Signal Processing II, ch
 (whitening.py), so that what the residual remembers does not pass for a push.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from math import log
 
@@ -62,17 +62,19 @@ class Stretch:
         """Whether the force explains nearly what offsets of all joints do."""
         return float(self.by_force.sum()) > SHARE * float(self.by_joint.sum())
 
-    @property
-    def lead(self) -> float:
-        """Nats by which the force explains more than an offset of one joint."""
-        return float(self.by_force.sum() - self.by_joint.max())
+    def lead(self, but: Collection[int] = ()) -> float:
+        """Return the nats by which the force leads an offset of one joint, on all joints but some."""
+        rest = [j for j in range(len(self.by_joint)) if j not in but]
+        return float(self.by_force[rest].sum() - self.by_joint[rest].max(initial=0.0))
 
 
-def faint(weighed: Evidence, left: Mapping[int, Array]) -> list[Stretch]:
+def faint(weighed: Evidence, left: Mapping[int, Array], soft: Collection[int] = ()) -> list[Stretch]:
     """Return the faint pushes in what a model leaves (n, N) Nm of runs, or none.
 
-    They are stronger than what comes and goes in the reference. None, too, unless they are nearly all that
-    comes and goes, and half of it reaches more than one joint. weighed: by what the model leaves.
+    Each pays for having been sought everywhere, and they are more than what comes and goes in the reference;
+    together they have the evidence for a name. None, too, unless they are nearly all that comes and goes, and
+    half of it reaches more than one joint. weighed: by what the model leaves. soft: joints (0-based) whose
+    gear was found to give way: what is left there is its own.
     """
     count, usual, every = 1, 0.0, list[Stretch]()
     for run, (tried, some) in zip(left, each(lambda r: _tried(weighed, r, left[r]), left), strict=True):
@@ -80,14 +82,25 @@ def faint(weighed: Evidence, left: Mapping[int, Array]) -> list[Stretch]:
             count, every = count + tried, every + some
         else:
             usual = max([usual, *(s.worth for s in some)])
-    asked = (EVIDENCE + log(count)) * (EXTRAPOLATED if weighed.has_reference else 1.0)
-    least = max(asked, HEALTHY * usual)
-    loud = sorted((s for s in every if s.worth > least), key=lambda s: -s.worth)
+    times = EXTRAPOLATED if weighed.has_reference else 1.0
+    price = max(times * log(count), HEALTHY * usual)
+    return believed(every, price, times * EVIDENCE, soft)
+
+
+def believed(
+    every: Sequence[Stretch], price: float, least: float, soft: Collection[int] = ()
+) -> list[Stretch]:
+    """Return the pushes among stretches that may overlap, if they are mostly that and tell enough together.
+
+    price: nats that each pays for its place; least: nats that they have beyond that. soft: see `faint`.
+    """
+    loud = sorted((s for s in every if s.worth > price), key=lambda s: -s.worth)
     found = apart(loud, lambda s: (s.run, s.rows))
-    pushes = [s for s in found if s.is_force and s.nats > least]
-    total, nearly = sum(s.worth for s in found), sum(s.worth for s in pushes)
-    told = sum(s.worth for s in pushes if s.lead > APART)
-    return pushes if mostly_pushes(total, nearly, told) else []
+    pushes = [s for s in found if s.is_force and s.nats > price]
+    total, nearly = (sum(s.worth - price for s in some) for some in (found, pushes))
+    told = sum(s.worth - price for s in pushes if s.lead(soft) > APART)
+    enough = sum(s.nats - price for s in pushes) > least
+    return pushes if enough and mostly_pushes(total, nearly, told) else []
 
 
 def _tried(weighed: Evidence, run: int, left: Array) -> tuple[int, list[Stretch]]:

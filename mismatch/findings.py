@@ -106,20 +106,26 @@ def _carried_share(p: Parts, j: int) -> float:
 
 
 def _contact(p: Parts, found: Pushed) -> dict[str, Any]:
-    """Return the finding of pushes, however short they are."""
-    pushes = found.contact.pushes
+    """Return the finding of pushes, however short they are, or of a load that is held for as short."""
+    pushes, weight = found.contact.pushes, found.contact.weight
     joints = [j + 1 for j in involved(pushes)]
+    numbers: dict[str, Quantity] = {"force": quantity(found.contact.force, None, "N")}
+    numbers |= {f"torque_{j}": quantity(_strongest(pushes, j - 1), None, "Nm") for j in joints}
+    effect, alike = "external_contact", ["payload"] if found.contact.weighs else []
+    if weight:
+        effect, alike = "payload", ["external_contact"]
+        joints = list(range(1, p.evidence.setup.space.dof + 1))
+        numbers = payload_numbers(weight.value, weight.covariance, p.nominal)
     return {
-        "effect": "external_contact",
+        "effect": effect,
         "joints": joints,
-        "indistinguishable_from": ["payload"] if found.contact.weighs else [],
-        "confidence": 0.45 if found.contact.weighs else 0.9,
-        "parameters": {"force": quantity(found.contact.force, None, "N")}
-        | {f"torque_{j}": quantity(_strongest(pushes, j - 1), None, "Nm") for j in joints},
-        "equation": EFFECTS["external_contact"].equation,
+        "indistinguishable_from": alike,
+        "confidence": 0.45 if alike else 0.9,
+        "parameters": numbers,
+        "equation": EFFECTS[effect].equation,
         "share": {str(j): round(_episode_share(p, pushes, j - 1), 3) for j in joints},
         "intervals": [[round(x, 3) for x in e.span] for e in pushes],
-        "next_motion": EFFECTS["payload"].motion if found.contact.weighs else None,
+        "next_motion": EFFECTS["payload"].motion if alike else None,
     }
 
 

@@ -15,7 +15,7 @@ from .evidence import Evidence
 from .firm import beside_firm
 from .local import at_one_place
 from .masses import BODIES, INERTIAL, MASSES_OFF, Refusals, all_off, unmoved
-from .naming import Scored, chosen, nuisance, ranked, scored, steadiness
+from .naming import Scored, at_best, chosen, nuisance, ranked, scored, steadiness
 from .pace import paceless
 from .plausibility import (
     NEAR_ZERO,
@@ -171,7 +171,10 @@ def judge(
         if why:
             refused.append((test, why))
             continue
-        alike, rivals = _rivals(evidence, fitted, best, [o for o in every if o.candidate.key not in hollow])
+        others = [o for o in every if o.candidate.key not in hollow]
+        if unshown := [c for c in evidence.found.unshown if c.joint == best.candidate.joint]:
+            others += at_best(evidence, fitted, unshown)
+        alike, rivals = _rivals(evidence, fitted, best, others)
         accepted.append(Accepted(test, alike, rivals, part.explained))
         model = chosen(model, evidence, test.candidate)
     return Judged(tuple(accepted), model, tuple(refused), masses[0])
@@ -254,8 +257,8 @@ def _rivals(
 ) -> tuple[tuple[Candidate, ...], tuple[tuple[Candidate, float, float], ...]]:
     """Split rivals into those that do as well and those beaten: (rival, nats, steadiness of the lead).
 
-    others: also those that were refused as not steady. A rival acts on the same joint, or one of the two on
-    all, and has little left to say once the best is in.
+    others: also those that were refused as not steady, or that are not shown. A rival acts on the same joint,
+    or one of the two on all, and has little left to say once the best is in.
     """
     joint = best.candidate.joint
     near = [

@@ -5,7 +5,7 @@ unknown effect so hides small ones until it is named, and never lends them its o
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from .candidates import Candidate, Key, of_key
 from .columns import BASELINE, BY_NAME, NARROW, REPEAT, Column, Space
 from .evidence import Evidence, residual, weighed
 from .grams import Scales, evenly, scales_of
+from .grid import size_at_peak
 from .lacking import widths
 from .peaks import peak
 from .refit import observed_runs, parameters
@@ -35,6 +36,8 @@ MUCH, WIDE, PROMPT = 0.3, 0.04, 0.006
 PEAK = 0.05
 #: rad; over so short a travel the whole Coulomb level may build up, over more of it less and less.
 SHORTEST = 3e-4
+#: Terms of which less explains as much the longer they take: on a grid, of size in steps.
+SLOW = ("presliding", "lag")
 #: Of a column's prior width, for columns that only describe the reference's own imperfections.
 SHARES = (0.003, 0.01, 0.03, 0.1)
 BARE = 1e-4
@@ -50,7 +53,8 @@ class Scored:
     """A hypothesis at its best nonlinear value. gain (F,): nats that it adds to a left-out fold's likelihood.
 
     evidence: what it adds on all folds at once; size (k,): its coefficients; std (k,). consistency: the
-    coefficients over their spread when one fold after the other is left out (jackknife; Efron 1982).
+    coefficients over their spread when one fold after the other is left out (jackknife; Efron 1982). between:
+    of what is late or builds up, the size where the evidence peaks between two nonlinear values (0: unknown).
     """
 
     candidate: Candidate
@@ -59,6 +63,7 @@ class Scored:
     size: Array
     std: Array
     consistency: float = 0.0
+    between: float = 0.0
 
     @property
     def total(self) -> float:
@@ -239,12 +244,22 @@ def ranked(evidence: Evidence, model: Directions, skip: Sequence[str] = ()) -> l
 def at_best(evidence: Evidence, model: Directions, some: Sequence[Candidate]) -> list[Scored]:
     """Return the conceivable ones of some hypotheses at their best nonlinear values, best first."""
     best: dict[Key, Scored] = {}
+    slow: dict[Key, list[Scored]] = {}
     for s in scored(evidence, model, some):
         c = s.candidate
         clear = not c.whole or s.evidence >= CLEAR
         if (c.key not in best or s.evidence > best[c.key].evidence) and c.conceivable(s.size) and clear:
             best[c.key] = s
+        if c.terms and c.terms[0] in SLOW:
+            slow.setdefault(c.key, []).append(s)
+    for key in slow.keys() & best.keys():
+        best[key] = replace(best[key], between=_between(slow[key]))
     return sorted(best.values(), key=lambda s: -s.evidence)
+
+
+def _between(some: Sequence[Scored]) -> float:
+    values = [s.candidate.values[0][1] for s in some]
+    return size_at_peak(values, [s.evidence for s in some], [float(s.size[0]) for s in some])
 
 
 def tested(evidence: Evidence, model: Directions, candidate: Candidate) -> tuple[Scored, Evidence]:
@@ -252,12 +267,13 @@ def tested(evidence: Evidence, model: Directions, candidate: Candidate) -> tuple
 
     At the nonlinear value that is best by these weights: before, what it explains was taken for noise.
     """
+    family = of_key(evidence.found.each, candidate.key)
     weighed = reweighed(evidence, chosen(model, evidence, candidate))
-    found = at_best(weighed, model, of_key(evidence.found.each, candidate.key))
+    found = at_best(weighed, model, family)
     if found and found[0].candidate != candidate:
-        candidate = found[0].candidate
-        weighed = reweighed(evidence, chosen(model, evidence, candidate))
-    return scored(weighed, model, [candidate])[0], weighed
+        weighed = reweighed(evidence, chosen(model, evidence, found[0].candidate))
+        found = at_best(weighed, model, family)
+    return (found or scored(weighed, model, [candidate]))[0], weighed
 
 
 def chosen(model: Directions, evidence: Evidence, candidate: Candidate) -> Directions:

@@ -55,10 +55,10 @@ def implausible(evidence: Evidence, test: Scored) -> str:
         if whole > 0 and test.size[0] < -LOST * whole:
             return f"takes {-100 * test.size[0] / whole:.0f} % of the rotor's inertia away"
     if c.effect in AT_REVERSALS and c.joint is not None:
-        level = evidence.setup.friction[c.joint, 0]
+        level, size = evidence.setup.friction[c.joint, 0], test.between or abs(float(test.size[0]))
         least = _PART_WITHIN if is_short(c) else AT_REVERSALS[c.effect]
-        if abs(test.size[0]) < (_CHANGED[c.effect] if evidence.has_reference else least) * level:
-            return f"is {100 * abs(test.size[0]) / level:.0f} % of the Coulomb level: too little for it"
+        if size < (_CHANGED[c.effect] if evidence.has_reference else least) * level:
+            return f"is {100 * size / level:.0f} % of the Coulomb level: too little for it"
     return ""
 
 
@@ -85,12 +85,19 @@ def misshapen(weighed: Evidence, model: Directions, test: Scored) -> tuple[str, 
     if c.effect == "position_dependent_friction":
         over, part = "q sign", NO_WAVE
     least = max(APART, part * test.evidence)
-    curve = tuple(weighed.found.curve[c.joint][k] for k, (name, _) in enumerate(names()) if name == over)
-    other = scored(weighed, model, [Candidate("unknown", c.joint, curve)])[0]
+    other = scored(weighed, model, [curve := curve_over(weighed, over, c.joint)])[0]
     if (lead := other.evidence - test.evidence) > least:
         what = {"q sign": "a curve over the angle that is no wave", "drive sign": "the torque's own sign"}
-        return f"{what[over]} explains {lead:.0f} nats more", curve
+        return f"{what[over]} explains {lead:.0f} nats more", curve.columns
     return "", ()
+
+
+def curve_over(evidence: Evidence, variable: str, joint: int) -> Candidate:
+    """Return the flexible curve over one of its variables on a joint (0-based), which is no physics."""
+    columns = evidence.found.curve[joint]
+    return Candidate(
+        "unknown", joint, tuple(columns[k] for k, (name, _) in enumerate(names()) if name == variable)
+    )
 
 
 def peakless(weighed: Evidence, model: Directions, test: Scored) -> str:

@@ -16,11 +16,15 @@ from .episodes import MOST, Episode, episode, episodes, loudness, mostly_pushes,
 from .evidence import Evidence, renewed, residual
 from .evidence import weighed as weighed_by
 from .faint import faint
+from .grams import regime
 from .judging import Judged
 from .physics import Physics, fitted_force, forces, levers
+from .quantities import payload_columns
 from .refit import observed_runs, parameters, residuals
 from .rows import Rows, kept
 from .selection import Directions
+from .weight import Touch, Weight, weight_of
+from .whitening import REST
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -46,12 +50,14 @@ _GRIP, _REACH, _PLACES = 0.1, 0.3, 20
 class Contact:
     """Episodes that a force explains on all joints, and the strongest one's force, N.
 
-    weighs: it only points down, as a load would that is picked up and put down.
+    weighs: it only points down, as a load would that is picked up and put down; weight: of a load that
+    explains them.
     """
 
     pushes: tuple[Episode, ...]
     force: float
     weighs: bool = False
+    weight: Weight | None = None
 
 
 @dataclass(frozen=True)
@@ -71,7 +77,9 @@ def pushed(evidence: Evidence, judged: Judged, weighed: Evidence) -> Pushed | No
     if any(a.score.candidate.effect == "backlash" for a in judged.accepted):
         return None
     which, runs = observed_runs(evidence), evidence.runs
-    found = _loud(evidence, judged.model) or _faint(weighed, judged.model)
+    named = [a.score.candidate for a in judged.accepted]
+    soft = {c.joint for c in named if c.effect == "joint_elasticity" and c.joint is not None}
+    found = _loud(evidence, judged.model) or _faint(weighed, judged.model, soft)
     if found is None:
         return None
     force, worth = found
@@ -95,7 +103,17 @@ def _loud(evidence: Evidence, model: Directions) -> tuple[Contact, float] | None
     worth = 0.5 * sum(e.worth for e in found) / float(np.mean(scales.inflation))
     sigma = {r: uncertainty(runs[r], scales, coulomb) for r in which}
     force = contact(found, runs, left, evidence.setup.physics, sigma)
-    return (force, worth) if force and worth >= _LEAST else None
+    if not force or worth < _LEAST:
+        return None
+    touches = [_touch(evidence, e, left[e.run], sigma[e.run]) for e in force.pushes]
+    return replace(force, weight=weight_of(evidence.setup.physics, touches)), worth
+
+
+def _touch(evidence: Evidence, push: Episode, left: Array, sigma: Array) -> Touch:
+    """Return the rows of a push, with what is left (n, N) of its run and known to sigma (n, N), Nm."""
+    rows, at = evidence.runs[push.run], push.rows
+    columns, moving = payload_columns(evidence, rows)[at], regime(rows)[at] != REST
+    return Touch(rows.q[at], left[at], sigma[at], columns, moving, rows.step)
 
 
 def _stays(left_out: Episode, fitted: Array) -> bool:
@@ -106,10 +124,10 @@ def _stays(left_out: Episode, fitted: Array) -> bool:
     return float(np.mean(fitted**2, axis=0).sum()) > _STAYS * float(left_out.strength.sum())
 
 
-def _faint(weighed: Evidence, model: Directions) -> tuple[Contact, float] | None:
-    """Return pushes that stand out over the time they last alone, and their nats."""
+def _faint(weighed: Evidence, model: Directions, soft: set[int]) -> tuple[Contact, float] | None:
+    """Return pushes that stand out over the time they last alone, and their nats; soft: see `faint`."""
     left = residuals(weighed, model)
-    found = faint(weighed, left)
+    found = faint(weighed, left, soft)
     if not found:
         return None
     scales, coulomb, runs = weighed.scales, weighed.setup.friction[:, 0], weighed.runs

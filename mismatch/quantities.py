@@ -1,6 +1,6 @@
 """A finding's numbers: physical parameters with units and standard deviations, from its coefficients."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -73,7 +73,8 @@ def parameters_of(evidence: Evidence, before: Directions, found: Scored, model: 
         return {"stiffness": quantity(1 / size[0], std[0] / size[0] ** 2, "Nm/rad")}
     if c.effect == "base_tilt":
         return {n: quantity(size[k], std[k], "rad") for k, n in enumerate(("roll", "pitch"))}
-    return _term(c, size, std)
+    part = found.between / abs(float(size[0])) if found.between else 1.0
+    return _term(c, part * size, part * std)
 
 
 def _term(c: Candidate, size: Array, std: Array) -> dict[str, Quantity]:
@@ -140,20 +141,3 @@ def _link(evidence: Evidence, c: Candidate, size: Array, std: Array) -> dict[str
     order = np.argsort(-sure)[:3]
     unit = {k: "kg m" if n.startswith("M") else "kg m^2" for k, n in enumerate(names)}
     return {names[k]: quantity(change[k], spread[k], unit[k]) for k in order if sure[k] > 2}
-
-
-def peak(values: Sequence[float], heights: Sequence[float]) -> tuple[float, float | None]:
-    """Return where evidence (nats) over a grid of a nonlinear value peaks, and its standard deviation.
-
-    A parabola through the best point and its neighbours, over the logarithm of the value.
-    """
-    k = int(np.argmax(heights))
-    if len(values) < 3 or k in (0, len(values) - 1):
-        return values[k], None
-    x = np.log(np.asarray(values[k - 1 : k + 2]))
-    bend, slope, _ = np.polyfit(x - x[1], np.asarray(heights[k - 1 : k + 2]) - heights[k], 2)
-    if bend >= 0:
-        return values[k], None
-    at = float(np.clip(-slope / (2 * bend), x[0] - x[1], x[2] - x[1]))
-    value = float(np.exp(x[1] + at))
-    return value, value * float(np.sqrt(-1 / (2 * bend)))

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 from .candidates import Candidate, of_key
 from .evidence import Evidence
+from .grid import peak
 from .judging import Judged
 from .naming import scored
-from .quantities import peak
 from .selection import Directions
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from residuum.mismatch.evidence import gather
-from residuum.mismatch.faint import faint
+from residuum.mismatch.faint import Stretch, believed, faint
 from residuum.mismatch.naming import nuisance, reweighed
 from residuum.mismatch.physics import forces
 from residuum.mismatch.refit import residuals
@@ -33,10 +33,30 @@ def test_a_push_below_the_noise_is_found(arm, moved) -> None:
     )
     stretches = found(pushed)
     time = pushed.runs[0].time
-    assert stretches and all(s.lead > 5 for s in stretches)
+    assert stretches and all(s.lead() > 5 for s in stretches)
     assert time[min(s.rows.start for s in stretches)] == pytest.approx(START, abs=0.4)
     assert time[max(s.rows.stop for s in stretches) - 1] == pytest.approx(END, abs=0.4)
     assert np.linalg.norm(stretches[0].force - FORCE) < 0.5 * np.linalg.norm(FORCE)
+
+
+def stretch(nats, start, by_joint=(8.0, 9.0, 7.0)):
+    gain = np.array(by_joint) * nats / sum(by_joint)
+    return Stretch(0, slice(start, start + 50), nats, FORCE, gain, 0.0, gain)
+
+
+def test_two_pushes_tell_together_what_neither_tells_alone() -> None:
+    """Each pays for its place, 9 nats here; what they have beyond that adds up to 10 or does not."""
+    one, other, less = stretch(16.0, 0), stretch(14.5, 100), stretch(12.0, 100)
+    assert believed([one], 9.0, 10.0) == believed([other], 9.0, 10.0) == []
+    assert believed([one, less], 9.0, 10.0) == believed([one, stretch(14.5, 20)], 9.0, 10.0) == []
+    assert believed([other, one], 9.0, 10.0) == [one, other]
+
+
+def test_what_a_soft_gear_leaves_on_its_own_joint_is_no_push() -> None:
+    mostly = stretch(85.0, 0, (1.0, 93.0, 8.0))
+    assert believed([mostly], 9.0, 10.0) == [mostly]
+    assert believed([mostly], 9.0, 10.0, soft={1}) == []
+    assert believed([mostly], 9.0, 10.0, soft={0}) == [mostly]
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -100,6 +100,15 @@ def test_what_every_gear_has_is_no_finding_but_a_change_of_it_is(
     assert (implausible(evidence, test) == "") == believed
 
 
+@pytest.mark.parametrize(("between", "believed"), [(0.55, True), (0.45, False), (0.0, False)])
+def test_a_late_sign_counts_by_its_size_where_its_evidence_peaks(between, believed) -> None:
+    """A grid's next longer lag needs 45 % of the level to explain what 55 % of it do a little earlier."""
+    level, late = 8.0, Candidate("velocity_lag", 0, (0,), (("lag", 0.018),))
+    evidence = SimpleNamespace(setup=SimpleNamespace(friction=np.array([[level, 1.0]])), has_reference=True)
+    test = Scored(late, np.ones(4), 50.0, np.array([0.45 * level]), np.ones(1), between=between * level)
+    assert (implausible(evidence, test) == "") == believed
+
+
 def test_a_delay_makes_signs_late_and_a_lag_beside_it_is_none() -> None:
     delay = Accepted(scored([9, 11], candidate=Candidate("time_delay", None, (0, 1))), (), (), 0.5)
     late = scored([9, 11], candidate=Candidate("velocity_lag", 1, (2,)))

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from residuum.mismatch.candidates import Candidate
+from residuum.mismatch.grid import peak, size_at_peak
 from residuum.mismatch.naming import Scored
-from residuum.mismatch.quantities import MIXING, parameters_of, peak, quantity
+from residuum.mismatch.quantities import MIXING, parameters_of, quantity
 
 
 @pytest.mark.parametrize("true", [0.006, 0.0105, 0.02])
@@ -47,3 +48,18 @@ def test_a_gear_between_two_stiffnesses_has_one_between_them() -> None:
         stiffness = parameters_of(None, None, found, None)["stiffness"]
         assert stiffness["value"] == pytest.approx(expected)
         assert stiffness["unit"] == "Nm/rad" and stiffness["std"] >= MIXING * expected
+
+
+def test_a_size_between_two_values_follows_their_powers() -> None:
+    """Evidence that is a parabola over the logarithm, sizes that fall with the square of the value."""
+    values = np.array([0.005, 0.01, 0.02, 0.04])
+    heights = 100.0 - 8.0 * np.log(values / 0.013) ** 2
+    assert peak(values, heights)[0] == pytest.approx(0.013)
+    assert size_at_peak(values, heights, -3.0 * values**-2.0) == pytest.approx(3.0 * 0.013**-2.0)
+
+
+def test_a_late_level_is_that_of_its_lag_between_two_of_the_grid() -> None:
+    late = Candidate("velocity_lag", 0, (0,), (("lag", 0.018),), ("lag",))
+    found = Scored(late, np.ones(2), 50.0, np.array([1.9]), np.array([0.1]), between=2.85)
+    level = parameters_of(None, None, found, None)["A"]
+    assert level["value"] == pytest.approx(2.85) and level["std"] == pytest.approx(0.15)
