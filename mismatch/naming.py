@@ -18,6 +18,7 @@ from .grams import Scales, evenly, scales_of
 from .grid import size_at_peak
 from .lacking import widths
 from .peaks import peak
+from .pool import each
 from .refit import observed_runs, parameters
 from .repeats import coefficients
 from .selection import Directions, Eliminated, eliminate, log_evidence
@@ -212,8 +213,8 @@ def scored(evidence: Evidence, model: Directions, some: Sequence[Candidate]) -> 
     place = {c: i for i, c in enumerate(used)}
     directions = evidence.found.directions.take(used)
     sums = evidence.sums
-    out = [eliminate(sums, model, directions, k) for k in range(len(sums.observed))]
-    whole = eliminate(sums, model, directions, None)
+    folds = (*range(len(sums.observed)), None)
+    *out, whole = each(lambda k: eliminate(sums, model, directions, k), folds)
     found = []
     for c in some:
         columns = [place[x] for x in c.columns]
@@ -231,8 +232,8 @@ def _consistency(whole: Eliminated, out: Sequence[Eliminated], columns: Sequence
         return 0.0
     size, _ = whole.solve(columns)
     metric = whole.schur[np.ix_(columns, columns)] @ size
-    each = np.array([o.solve(columns)[0] @ metric for o in out]) / max(float(size @ metric), 1e-300)
-    spread = float(np.sum((each - each.mean()) ** 2)) * (len(each) - 1) / len(each)
+    own = np.array([o.solve(columns)[0] @ metric for o in out]) / max(float(size @ metric), 1e-300)
+    spread = float(np.sum((own - own.mean()) ** 2)) * (len(own) - 1) / len(own)
     return float(1 / np.sqrt(max(spread, 1e-12)))
 
 
