@@ -44,7 +44,8 @@ LATE_LEVEL = 1.5
 #: some of a swing); one of two may be below zero by this share of both.
 WHOLE, BEYOND = (0.6, 1.3), 0.2
 #: Of the wide prior of base parameters: how much a body may change them, by little or by much. A width that
-#: fits much would cost one that is a few percent off 30 nats.
+#: fits much would cost one that is a few percent off 30 nats. Without a reference little is what masses that
+#: are all off do, and what friction's bends leave.
 BY_LITTLE, BY_MUCH = 0.1, 3.0
 
 
@@ -188,7 +189,7 @@ def candidates(
             turned = unit[space.common_index(f"encoder{j + 1}")] * (-1.0 if least > 0 else 1.0)
             at = add(turned, common_std["encoder"])
             unshown.append(Candidate("backlash", j, (at,), positive=True, most=GAPS[-1]))
-    _inertial(space, physics, base_std, add, each)
+    _inertial(space, physics, base_std, add, each, (BY_LITTLE, BY_MUCH) if changed else (BY_MUCH,))
 
     def described(term: str) -> tuple[tuple[int, ...], ...]:
         mine = [k for k, c in enumerate(space.own) if c.term == term]
@@ -238,9 +239,13 @@ def _of_all_joints(
 
 
 def _inertial(
-    space: Space, physics: Physics, base_std: Array, add: Callable[[Array, float], int], each: list[Candidate]
-) -> None:
-    """Directions of a link's ten parameters, of a payload (the last link's) and of each rotor."""
+    space: Space, physics: Physics, base_std: Array, add: Callable[[Array, float], int],
+    each: list[Candidate], widths: Sequence[float],
+) -> None:  # fmt: skip
+    """Directions of a link's ten parameters, of a payload (the last link's) and of each rotor.
+
+    widths: of the priors of a link's and a payload's, each a hypothesis of its own.
+    """
 
     def lifted(direction: Array) -> Array:
         vector = np.zeros(space.size)
@@ -254,7 +259,7 @@ def _inertial(
         # combinations in units of the priors of the base parameters that they change
         some = [lifted(base_std * x) for x in basis.T[sizes > 1e-6 * max(sizes[0], 1e-12)]]
         effect = "payload" if link == n - 1 else "link_inertial"
-        for width in (BY_LITTLE, BY_MUCH) if some else ():
+        for width in widths if some else ():
             columns = tuple(add(x, width) for x in some)
             each.append(Candidate(effect, None if effect == "payload" else link, columns))
     for j in range(n):
