@@ -7,13 +7,14 @@ catalogue are asked. Each length runs in a process of its own, reading included.
 """
 
 import argparse
+import multiprocessing
 import os
 import resource
-import subprocess
-import sys
 import tempfile
 import time
 from collections import defaultdict
+from concurrent.futures import ProcessPoolExecutor
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -32,17 +33,15 @@ HIDDEN = ("stribeck", "joint_elasticity", "cable_spring")
 
 def recorded(out: Path, count: int, seed: int) -> list[Path]:
     """Simulate recordings that are not there yet."""
-    files = [out / f"run_{k:02d}.parquet" for k in range(count)]
+    files = [out / f"seed_{seed}_run_{k:02d}.parquet" for k in range(count)]
     if all(f.exists() for f in files):
         return files
     robot, _ = load_robot("ur5e")
     rng = np.random.default_rng(seed)
     plant = healthy.plain(robot, rng)
     motions = tuple(paths.recording(robot, rng, (SECONDS, SECONDS)) for _ in files)
-    heat, seeds = (
-        tuple(healthy.temperatures(rng, count)),
-        tuple(int(s) for s in rng.integers(2**31, size=count)),
-    )
+    heat = tuple(healthy.temperatures(rng, count))
+    seeds = tuple(int(s) for s in rng.integers(2**31, size=count))
     bench = Bench(robot, RATE, plant, motions, heat, seeds)
     scene = Scene(robot, motions, healthy.factory(robot), rng, False)
     drawn = [CATALOGUE[name](scene) for name in HIDDEN]
@@ -54,17 +53,17 @@ def recorded(out: Path, count: int, seed: int) -> list[Path]:
 def timed(files: list[Path]) -> None:
     """Explain some recordings and print how long each stage took."""
     robot, digest = load_robot("ur5e")
-    stages, last = defaultdict[str, float](float), ["", time.perf_counter()]
-    start = last[1]
+    marks = [("start", time.perf_counter())]
 
     def stage(name: str) -> None:
-        now = time.perf_counter()
-        stages[str(last[0])] += now - float(last[1])
-        last[:] = [name.split(",")[0], now]
+        marks.append((name.split(",")[0], time.perf_counter()))
 
     found = explain(Task(tuple(files), (), robot, digest, len(robot.joint)), stage)
-    stage("")
-    whole = time.perf_counter() - start
+    stage("end")
+    whole = marks[-1][1] - marks[0][1]
+    stages = defaultdict[str, float](float)
+    for (name, begin), (_, end) in pairwise(marks):
+        stages[name] += end - begin
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
     names = ", ".join(f"{f['effect']} {f['joints']}" for f in found.findings["findings"])
     print(f"{len(files) * SECONDS / 60:.1f} min: {whole:.0f} s, {memory:.2f} GB; {names or 'nothing'}")
@@ -79,18 +78,14 @@ def main() -> None:
     parser.add_argument("--minutes", nargs="+", type=float, default=[2.5, 5.0, 10.0])
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, default=Path(tempfile.gettempdir()) / "explain_time")
-    parser.add_argument("--only", type=int, default=0, help=argparse.SUPPRESS)
     given = parser.parse_args()
     counts = [max(1, round(60 * m / SECONDS)) for m in given.minutes]
     given.out.mkdir(parents=True, exist_ok=True)
-    files = recorded(given.out, given.only or max(counts), given.seed)
-    if given.only:
-        timed(files[: given.only])
-        return
+    files = recorded(given.out, max(counts), given.seed)
     print(f"{os.cpu_count()} cores, {RATE} Hz, six joints; hidden: {', '.join(HIDDEN)}", flush=True)
     for count in counts:
-        command = [sys.executable, __file__, "--only", str(count), "--out", str(given.out)]
-        subprocess.run([*command, "--seed", str(given.seed)], check=True)
+        with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as fresh:
+            fresh.submit(timed, files[:count]).result()
 
 
 if __name__ == "__main__":

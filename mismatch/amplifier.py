@@ -2,7 +2,7 @@
 
 from .evidence import Evidence
 from .judging import Judged
-from .naming import APART, scored
+from .naming import APART, worth
 from .plausibility import curve_over
 from .sharpen import without
 
@@ -17,8 +17,8 @@ def hidden_amplifiers(weighed: Evidence, judged: Judged) -> tuple[str, ...]:
         c = a.score.candidate
         if c.effect != "coulomb_friction" or c.joint is None:
             continue
-        level, drive = scored(weighed, without(judged, k), [c, curve_over(weighed, "drive sign", c.joint)])
-        if drive.evidence > level.evidence - APART:
+        model, drive = without(judged, k), curve_over(weighed, "drive sign", c.joint)
+        if worth(weighed, model, drive) > worth(weighed, model, c) - APART:
             found.append(
                 f"whether joint {c.joint + 1}'s friction changed or its amplifier's dead band: its "
                 "torque turns round with its motion (brake harder, or carry a load)"

@@ -61,7 +61,11 @@ def _what_next(p: Parts, c: Candidate, a: Accepted) -> str | None:
 
 
 def _joints(p: Parts, c: Candidate) -> list[int]:
-    return list(range(1, p.evidence.setup.space.dof + 1)) if c.joint is None else [c.joint + 1]
+    return _every_joint(p) if c.joint is None else [c.joint + 1]
+
+
+def _every_joint(p: Parts) -> list[int]:
+    return list(range(1, p.evidence.setup.space.dof + 1))
 
 
 def _confidence(a: Accepted) -> float:
@@ -84,7 +88,7 @@ def _shares(p: Parts, joints: Sequence[int], a: Accepted) -> dict[int, float]:
 
 def _carried(p: Parts, load: Carried) -> dict[str, Any]:
     """Return the finding of a load that is picked up and put down: a payload with intervals."""
-    joints = list(range(1, p.evidence.setup.space.dof + 1))
+    joints = _every_joint(p)
     return {
         "effect": "payload",
         "joints": joints,
@@ -108,14 +112,14 @@ def _carried_share(p: Parts, j: int) -> float:
 def _contact(p: Parts, found: Pushed) -> dict[str, Any]:
     """Return the finding of pushes, however short they are, or of a load that is held for as short."""
     pushes, weight = found.contact.pushes, found.contact.weight
-    joints = [j + 1 for j in involved(pushes)]
-    numbers: dict[str, Quantity] = {"force": quantity(found.contact.force, None, "N")}
-    numbers |= {f"torque_{j}": quantity(_strongest(pushes, j - 1), None, "Nm") for j in joints}
-    effect, alike = "external_contact", ["payload"] if found.contact.weighs else []
     if weight:
-        effect, alike = "payload", ["external_contact"]
-        joints = list(range(1, p.evidence.setup.space.dof + 1))
+        effect, alike, joints = "payload", ["external_contact"], _every_joint(p)
         numbers = payload_numbers(weight.value, weight.covariance, p.nominal)
+    else:
+        effect, alike = "external_contact", ["payload"] if found.contact.weighs else []
+        joints = [j + 1 for j in involved(pushes)]
+        numbers = {"force": quantity(found.contact.force, None, "N")}
+        numbers |= {f"torque_{j}": quantity(_strongest(pushes, j - 1), None, "Nm") for j in joints}
     return {
         "effect": effect,
         "joints": joints,

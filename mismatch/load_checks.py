@@ -32,17 +32,14 @@ ALIKE, AGREE = (0.7, 1.3), 0.7
 
 def objection(found: Held) -> str:
     """Return in words why it is no load that is picked up and put down, or nothing."""
-    mass, std = float(found.value[0]), float(np.sqrt(found.fit.solve(TEN)[1][0, 0]))
     if not LEAST <= found.share <= MOST:
         return f"is held in {100 * found.share:.0f} % of the time"
     if all(h.all() or not h.any() for h in found.held):
         return "is never picked up or put down within a recording"
     if found.fit.evidence(TEN) < EVIDENCE:
         return f"evidence {found.fit.evidence(TEN):.1f} nats, {EVIDENCE:g} asked"
-    if mass < max(LIGHTEST, SURE * std):
-        return f"has a mass of {mass:.2g} kg with a standard deviation of {std:.2g} kg"
-    if (away := float(np.linalg.norm(found.value[1:4])) / mass) > REACH:
-        return f"has its centre {away:.2g} m from the last joint"
+    if why := unlike_a_load(found.value, found.fit.solve(TEN)[1]):
+        return why
     lengths = [(part.stop - part.start) * x.rows.step for x, part, _ in found.events]
     if max(lengths) < LONG and len(lengths) < MANY:
         return "is held no longer than a push lasts"
@@ -54,6 +51,27 @@ def objection(found: Held) -> str:
     if force < FORCE or whole < WHOLE:
         return f"explains {100 * force:.0f} % of what a free force does, and {100 * whole:.0f} % of all"
     return ""
+
+
+def unlike_a_load(value: Array, covariance: Array) -> str:
+    """Return in words that no gripper holds a mass so small or unsure, or so far away, or nothing.
+
+    value (10,), covariance (10, 10): as of `quantities.payload_numbers`.
+    """
+    mass, std = float(value[0]), float(np.sqrt(covariance[0, 0]))
+    if mass < max(LIGHTEST, SURE * std):
+        return f"has a mass of {mass:.2g} kg with a standard deviation of {std:.2g} kg"
+    if (away := float(np.linalg.norm(value[1:4])) / mass) > REACH:
+        return f"has its centre {away:.2g} m from the last joint"
+    return ""
+
+
+def by_free_force(columns: Array, target: Array) -> Array:
+    """Return the squares of target (n, N) that a force explains which is free at each instant, (n,).
+
+    columns (n, N, 3): of the force, as `physics.forces` has them, in the target's units.
+    """
+    return np.asarray(np.einsum("tj,tji,ti->t", target, columns, fitted_force(columns, target)), np.float64)
 
 
 def same_load(found: Held) -> Mask:
@@ -109,8 +127,7 @@ def _explained(found: Held) -> tuple[float, float]:
         root = np.sqrt(weights(x.rows, found.evidence.noise))
         target = e * root
         columns = forces(found.evidence.setup.physics, x.rows.q, e.shape[1]) * root[:, :, None]
-        force = np.einsum("tj,tji,ti->t", target, columns, fitted_force(columns, target))
-        each = np.stack([force, np.sum(target**2, axis=1)], axis=1)
+        each = np.stack([by_free_force(columns, target), np.sum(target**2, axis=1)], axis=1)
         load += float(np.sum((target**2 - (target - y * root) ** 2)[h]))
         for k, part in enumerate((~h, h)):
             rows[k] += part.sum()

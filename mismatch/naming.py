@@ -226,6 +226,12 @@ def scored(evidence: Evidence, model: Directions, some: Sequence[Candidate]) -> 
     return found
 
 
+def worth(evidence: Evidence, model: Directions, candidate: Candidate) -> float:
+    """Return the nats that a hypothesis adds to a model on all folds at once: the evidence of its score."""
+    directions = evidence.found.directions.take(candidate.columns)
+    return eliminate(evidence.sums, model, directions, None).evidence(range(len(directions)))
+
+
 def _consistency(whole: Eliminated, out: Sequence[Eliminated], columns: Sequence[int]) -> float:
     """Return one over the jackknife's standard error of a hypothesis' size, in its own metric."""
     if len(out) < 2:

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from .candidates import Candidate
 from .evidence import Evidence
 from .flexible import names
-from .naming import APART, CLEAR, Scored, chosen, scored
+from .naming import APART, CLEAR, Scored, chosen, scored, worth
 from .peaks import peak
 from .refit import parameters
 from .selection import Directions
@@ -85,8 +85,8 @@ def misshapen(weighed: Evidence, model: Directions, test: Scored) -> tuple[str, 
     if c.effect == "position_dependent_friction":
         over, part = "q sign", NO_WAVE
     least = max(APART, part * test.evidence)
-    other = scored(weighed, model, [curve := curve_over(weighed, over, c.joint)])[0]
-    if (lead := other.evidence - test.evidence) > least:
+    curve = curve_over(weighed, over, c.joint)
+    if (lead := worth(weighed, model, curve) - test.evidence) > least:
         what = {"q sign": "a curve over the angle that is no wave", "drive sign": "the torque's own sign"}
         return f"{what[over]} explains {lead:.0f} nats more", curve.columns
     return "", ()
@@ -139,7 +139,7 @@ def of_friction(weighed: Evidence, model: Directions, test: Scored) -> str:
     if c.effect != "time_delay" or c.joint is None:
         return ""
     alone = Candidate("velocity_lag", c.joint, weighed.found.late_friction[c.joint])
-    lead = scored(weighed, model, [alone])[0].evidence - test.evidence
+    lead = worth(weighed, model, alone) - test.evidence
     return f"friction alone that is late explains {lead:.0f} nats more" if lead >= APART else ""
 
 

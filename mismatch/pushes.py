@@ -112,7 +112,7 @@ def _loud(evidence: Evidence, model: Directions) -> tuple[Contact, float] | None
 def _touch(evidence: Evidence, push: Episode, left: Array, sigma: Array) -> Touch:
     """Return the rows of a push, with what is left (n, N) of its run and known to sigma (n, N), Nm."""
     rows, at = evidence.runs[push.run], push.rows
-    columns, moving = payload_columns(evidence, rows)[at], regime(rows)[at] != REST
+    columns, moving = payload_columns(evidence, kept(rows, at)), regime(rows)[at] != REST
     return Touch(rows.q[at], left[at], sigma[at], columns, moving, rows.step)
 
 

@@ -77,7 +77,7 @@ def make_rows(recording: Recording, setup: Setup) -> Rows:
     return replace(rows, fast=_fast(track, setup, kernel, origin))
 
 
-def kept(rows: Rows, keep: NDArray[np.bool_]) -> Rows:
+def kept(rows: Rows, keep: NDArray[np.bool_] | slice) -> Rows:
     """Return some rows (n,)."""
     some: dict[str, Any] = {name: getattr(rows, name)[keep] for name in ("time", *_OF_JOINTS)}
     return replace(rows, columns=tuple(x[keep] for x in rows.columns), **some)

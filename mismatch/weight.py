@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .held import WIDTHS
-from .load_checks import FORCE, LIGHTEST, REACH, SECOND, SURE
-from .physics import Physics, fitted_force, forces
+from .load_checks import FORCE, SECOND, by_free_force, unlike_a_load
+from .physics import Physics, forces
 
 Array = NDArray[np.float64]
 
@@ -55,14 +55,11 @@ def weight_of(physics: Physics, touches: Sequence[Touch]) -> Weight | None:
     matrix = np.einsum("tjk,tjl->kl", columns, columns) + np.diag(1 / WIDTHS**2)
     covariance = np.linalg.inv(matrix)
     value = covariance @ np.einsum("tjk,tj->k", columns, target)
-    mass, load = float(value[0]), columns @ value
-    if mass < max(LIGHTEST, SURE * float(np.sqrt(covariance[0, 0]))):
-        return None
+    load = columns @ value
     nats = 0.5 * np.sum(load**2 * moving, axis=0)
-    if np.linalg.norm(value[1:4]) > REACH * mass or nats.sum() - nats.max() < SECOND:
+    if unlike_a_load(value, covariance) or nats.sum() - nats.max() < SECOND:
         return None
     explained = float(np.sum(target**2 - (target - load) ** 2))
     free = np.concatenate([forces(physics, t.q, physics.dof) / t.sigma[:, :, None] for t in touches])
-    by_force = float(np.einsum("tj,tji,ti->", target, free, fitted_force(free, target)))
-    enough = explained > max(_WHOLE * float(np.sum(target**2)), FORCE * by_force)
+    enough = explained > max(_WHOLE * np.sum(target**2), FORCE * by_free_force(free, target).sum())
     return Weight(value, covariance) if enough else None
