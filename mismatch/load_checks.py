@@ -10,7 +10,7 @@ from .segments import Mask, sums_of
 
 Array = NDArray[np.float64]
 
-#: s; a push is over before.
+#: s; a push is over before. What is held so long has to show it there, by EVIDENCE.
 LONG = 3.0
 #: So many stretches of the same mass need not be long.
 MANY = 4
@@ -40,8 +40,7 @@ def objection(found: Held) -> str:
         return f"evidence {found.fit.evidence(TEN):.1f} nats, {EVIDENCE:g} asked"
     if why := unlike_a_load(found.value, found.fit.solve(TEN)[1]):
         return why
-    lengths = [(part.stop - part.start) * x.rows.step for x, part, _ in found.events]
-    if max(lengths) < LONG and len(lengths) < MANY:
+    if _longest(found) < LONG and len(found.events) < MANY:
         return "is held no longer than a push lasts"
     if np.mean(same_load(found)) < AGREE:
         return "is not the same load in each stretch"
@@ -77,6 +76,15 @@ def by_free_force(columns: Array, target: Array) -> Array:
 def same_load(found: Held) -> Mask:
     """Return which events (or halves, of one alone) show the load of the others."""
     return np.array([ALIKE[0] < part < ALIKE[1] and nats > STRETCH for part, nats in _each(found)])
+
+
+def _longest(found: Held) -> float:
+    """Return how long the longest event lasts that shows the load by itself, s."""
+    lengths = [(part.stop - part.start) * x.rows.step for x, part, _ in found.events]
+    if len(lengths) == 1:  # it is all the evidence that there is
+        return lengths[0]
+    shown = zip(lengths, _each(found), strict=True)
+    return max((length for length, (_, nats) in shown if nats > EVIDENCE), default=0.0)
 
 
 def _each(found: Held) -> list[tuple[float, float]]:

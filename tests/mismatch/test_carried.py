@@ -10,7 +10,7 @@ from rows_by_hand import rows, scales
 from residuum.mismatch.carried import carried, unloaded
 from residuum.mismatch.evidence import Evidence, gather, renewed
 from residuum.mismatch.explain import Task, explain
-from residuum.mismatch.load_checks import _beside_one_joint
+from residuum.mismatch.load_checks import LONG, _beside_one_joint, _longest
 from residuum.mismatch.physics import forces
 from residuum.mismatch.quantities import payload_directions, payload_numbers
 from residuum.mismatch.segments import first_guesses, joined, segmented, stretches, sums_of, two_levels
@@ -218,3 +218,17 @@ def test_what_one_joint_in_motion_tells_is_no_load() -> None:
         evidence=SimpleNamespace(noise=scales(3)),
     )
     assert _beside_one_joint(held) == pytest.approx(0.5 * 400 / 4 * (0.3 / 0.3) ** 2)
+
+
+@pytest.mark.parametrize(("shown", "longest"), [(1.0, 4.0), (0.02, 2.0)])
+def test_a_stretch_is_as_long_as_it_shows_the_load(shown, longest) -> None:
+    """Of 2 s and of 4 s, in which the arm hardly feels the load where shown is small."""
+    which, rng = rows(360, joints=3, moving=np.ones((360, 3))), np.random.default_rng(4)
+    columns = rng.standard_normal((360, 3, 10))
+    columns[120:] *= shown
+    run = SimpleNamespace(rows=which, columns=columns)
+    events = [(run, part, columns[part] @ LOAD) for part in (slice(0, 120), slice(120, 360))]
+    held = SimpleNamespace(events=events, evidence=SimpleNamespace(noise=scales(3)))
+    assert which.step == pytest.approx(1 / 60)
+    assert _longest(held) == pytest.approx(longest)
+    assert (longest < LONG) == (shown < 1.0)
