@@ -13,6 +13,7 @@ from .columns import (
     BASELINE,
     DELAYS,
     GAPS,
+    GENTLE,
     GRIDS,
     LATE,
     LATE_FRICTION,
@@ -87,6 +88,7 @@ def own_columns(gear: float) -> tuple[Column, ...]:
         tried = GRIDS.get(term, ((),))
         width = (("width", WIDTH),) if "width" in entry.parameters else ()
         found += [Column(term, p, values + width) for values in tried for p in entry.linear_in]
+    found += [Column("tanh", "Ft", (("vt", v),)) for v in GENTLE]
     found += [Column("coulomb", "Fc", (("width", w),)) for w in SOFT]
     found += [Column(SLACK, "gap", (("gap", x),)) for x in GAPS]
     found += [Column(WINDUP, "torque", (("stiffness", x),)) for x in STIFFNESSES]

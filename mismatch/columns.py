@@ -35,7 +35,7 @@ class Column:
     @property
     def soft(self) -> bool:
         """Whether its sign turns gently: how a gear's friction passes through zero speed is no finding."""
-        return self.value.get("width") in SOFT
+        return self.value.get("width") in SOFT or self.value.get("vt") in GENTLE
 
     @property
     def short(self) -> bool:
@@ -107,8 +107,9 @@ RAISED = ("stribeck", "load_dependent", "temperature_dependent", "position_depen
 BASELINE = ("coulomb", "viscous")
 #: rad/s; width of the smooth sign: far below the terms' default, whose tail reaches far into slow motion.
 WIDTH = 1e-4
-#: rad/s; widths at which Coulomb friction may change its sign instead, real or simulated.
-SOFT = (0.002, 0.01, 0.03)
+#: rad/s; widths at which Coulomb friction may change its sign instead, real or simulated: as the smooth sign
+#: does, v / (|v| + width), and as a hyperbolic tangent, which ends sooner.
+SOFT, GENTLE = (0.002, 0.01, 0.03), (0.005, 0.01, 0.02, 0.04)
 #: rad; presliding shorter than this is every gear's, and no finding.
 SHORT = 0.0008
 #: Ripple: orders per motor turn.

@@ -80,7 +80,7 @@ def same_load(found: Held) -> Mask:
 
 def _longest(found: Held) -> float:
     """Return how long the longest event lasts that shows the load by itself, s."""
-    lengths = [(part.stop - part.start) * x.rows.step for x, part, _ in found.events]
+    lengths = [float((part.stop - part.start) * x.rows.step) for x, part, _ in found.events]
     if len(lengths) == 1:  # it is all the evidence that there is
         return lengths[0]
     shown = zip(lengths, _each(found), strict=True)

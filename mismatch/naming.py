@@ -128,15 +128,28 @@ def shared(space: Space, keep: Sequence[int], std: Sequence[float]) -> Direction
 def _softened(evidence: Evidence, model: Directions) -> Directions:
     """Let each joint's Coulomb friction pass zero speed as gently as its rows ask for, if they do.
 
+    What they ask for most comes first, so that it is not made up of what does not fit them.
     But only rising: a gentle part less a gentler one has a peak, which is Stribeck's and to be named.
     """
     space, best = evidence.setup.space, log_evidence(evidence.sums, model)
     for j in range(space.dof):
-        for k in (k for k, c in enumerate(space.own) if c.soft):
-            softer = model + shared(space, [space.own_index(j, k)], [float(evidence.own_std[j, k])])
-            if (found := log_evidence(evidence.sums, softer)) > best and _rises(evidence, softer, j):
-                best, model = found, softer
+        gentle = [k for k, c in enumerate(space.own) if c.soft]
+        while gentle:
+            tried = {k: model + _alone(evidence, j, k) for k in gentle}
+            worth = {k: log_evidence(evidence.sums, softer) for k, softer in tried.items()}
+            k = max(gentle, key=lambda k: worth[k])
+            if worth[k] <= best:
+                break
+            gentle.remove(k)
+            if _rises(evidence, tried[k], j):
+                best, model = worth[k], tried[k]
     return model
+
+
+def _alone(evidence: Evidence, joint: int, k: int) -> Directions:
+    """Return a joint's own column k as a direction that both sides share."""
+    space = evidence.setup.space
+    return shared(space, [space.own_index(joint, k)], [float(evidence.own_std[joint, k])])
 
 
 def _rises(evidence: Evidence, model: Directions, joint: int) -> bool:

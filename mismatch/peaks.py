@@ -17,18 +17,18 @@ Array = NDArray[np.float64]
 
 #: rad/s; speeds at which the curve is looked at: from creeping to where it has ended.
 _SLOWEST, _FASTEST, _POINTS = 1e-4, 2.0, 120
-#: Terms of friction that change its level with speed and no more.
+#: Terms of friction that change its level with speed and no more, beside those of a gentle sign.
 DRY = ("coulomb", "stribeck")
 
 
 def peak(
     space: Space, theta: Array, joint: int, terms: Sequence[str] = DRY, slowest: float = _SLOWEST
 ) -> float:
-    """Return how far (Nm) some terms of a joint rise, together, above the level they end at.
+    """Return how far (Nm) some terms of a joint and its gentle signs rise, together, above their end.
 
     theta (P,): a fit. Only speeds above `slowest`, rad/s, count.
     """
-    own = [(k, c) for k, c in enumerate(space.own) if c.term in terms]
+    own = [(k, c) for k, c in enumerate(space.own) if c.term in terms or c.soft]
     curve = np.sum([theta[space.own_index(joint, k)] * _shape(c) for k, c in own], axis=0)
     return float(max(curve[_speeds() >= slowest].max() - curve[-1], 0.0))
 

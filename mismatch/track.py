@@ -20,15 +20,13 @@ from .columns import SLACK, WINDUP, Space
 from .flexible import Ranges
 from .lacking import Lacking
 from .physics import Physics, slopes, tilts
-from .speed import smooth_speeds
+from .speed import calm_speeds
 
 Array = NDArray[np.float64]
 
 #: Hz; lowered to an eighth of the recording's rate. DERIVED: where speeds are derived from positions, whose
 #: noise is then differentiated twice.
 CUTOFF, DERIVED = 15.0, 10.0
-#: Hz; speeds are smoothed this much, as far as the rate allows: the rows' filter does not notice.
-FASTEST = 30.0
 #: s and rad: within so little travel for so long a joint is at rest, bouncing and creeping included; what
 #: turns round sooner passes through zero speed.
 PAUSE, BRISTLE = 0.15, 1e-3
@@ -126,12 +124,6 @@ def track_of(recording: Recording, setup: Setup) -> tuple[Track, Kernel, float]:
         _since(time, qd), moves(q, rate), beyond, np.empty((len(q), n, 0)), _slopes(time, q, qd, setup),
     )  # fmt: skip
     return replace(track, measured=track.measured - _known(track, setup)), kernel, rate
-
-
-def calm_speeds(recording: Recording) -> Array:
-    """Return the speeds (T, M), rad/s, that columns are made of."""
-    samples = SAMPLES_PER_PERIOD if recording.qd is None else 4  # a slope needs more of them
-    return smooth_speeds(recording, min(FASTEST, recording.rate / samples))
 
 
 def _known(track: Track, setup: Setup) -> Array:

@@ -13,8 +13,9 @@ _T0 = Parameter("deg C", "temperature of the other terms", 30.0)
 
 
 def _tanh(x: sp.Expr) -> sp.Expr:
-    """Write tanh with the one function that every language has."""
-    return 1 - 2 / (sp.exp(2 * x) + 1)
+    """Write tanh with the one function that every language has, which must not overflow."""
+    most = 20  # tanh is one from here, in double precision
+    return 1 - 2 / (sp.exp(x + most - sp.Abs(x - most)) + 1)
 
 
 _PLAIN = (

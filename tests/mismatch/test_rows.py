@@ -8,7 +8,7 @@ from terms_by_hand import built_up_by_hand, torque_by_hand
 from residuum.mismatch.columns import DELAYS, LATE, WIDTH
 from residuum.mismatch.physics import forces, levers, tilts
 from residuum.mismatch.rows import make_rows
-from residuum.mismatch.track import calm_speeds
+from residuum.mismatch.speed import calm_speeds
 from residuum.robots import load_robot
 from residuum.symbolic.terms import CATALOGUE
 from residuum.symbolic.tilt import tilted
