@@ -32,6 +32,8 @@ _WINDOW = 2.0
 _MEMORY = 1.0
 #: s; so close to a change of state the filter mixes both.
 _BLUR = 0.2
+#: s; so close to one whoever hands it over may touch it.
+_TOUCHES = 0.5
 #: Share of rows whose state changes in the last round.
 _CHANGE = 1e-3
 #: s; a stretch or a pause counts from here.
@@ -110,6 +112,19 @@ def unloaded(evidence: Evidence, load: Carried) -> Evidence:
     for r, torque in zip(observed_runs(evidence), load.torque, strict=True):
         runs[r] = replace(runs[r], torque=runs[r].torque - torque)
     return renewed(evidence, runs)
+
+
+def handled(evidence: Evidence, load: Carried) -> dict[int, Mask]:
+    """Return by observed run which rows (n,) are close to a change: who picks up or puts down touches.
+
+    And the change itself is known to its rows at best.
+    """
+    close = {}
+    for r, torque in zip(observed_runs(evidence), load.torque, strict=True):
+        held = np.any(torque != 0.0, axis=1)
+        change = np.diff(held, prepend=held[:1])
+        close[r] = maximum_filter1d(change, 2 * round(_TOUCHES / evidence.runs[r].step) + 1)
+    return close
 
 
 def _answer(found: Held) -> Carried:

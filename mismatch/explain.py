@@ -17,7 +17,7 @@ from ..robots.model import Input, Model
 from ..symbolic.nominal import nominal_model
 from .amplifier import hidden_amplifiers
 from .answer import compose
-from .carried import Carried, carried, unloaded
+from .carried import Carried, carried, handled, unloaded
 from .coverage import cannot_show
 from .episodes import episodes
 from .evidence import Evidence, evenly_weighed, gather, residual
@@ -122,7 +122,7 @@ def _told(recorded: Evidence, progress: Progress) -> _Told:
     judged = judge(every, progress)
     progress("pushes")
     weighed = reweighed(every, judged.model)
-    if not (push := pushed(every, judged, weighed)):
+    if not (push := pushed(every, judged, weighed, handled(recorded, load) if load else {})):
         return _Told(recorded, every, every, load, None, judged, weighed)
     evidence = released(every, push)
     judged = judge(evidence, progress)

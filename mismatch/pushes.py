@@ -22,6 +22,7 @@ from .physics import Physics, fitted_force, forces, levers
 from .quantities import payload_columns
 from .refit import observed_runs, parameters, residuals
 from .rows import Rows, kept
+from .segments import clear_of
 from .selection import Directions
 from .weight import Touch, Weight, weight_of
 from .whitening import REST
@@ -69,17 +70,20 @@ class Pushed:
     free: tuple[Flags, ...]
 
 
-def pushed(evidence: Evidence, judged: Judged, weighed: Evidence) -> Pushed | None:
+def pushed(
+    evidence: Evidence, judged: Judged, weighed: Evidence, handled: Mapping[int, Flags]
+) -> Pushed | None:
     """Return the pushes in what a model leaves of the observed runs: loud ones, else faint ones, or None.
 
     None, too, where a gear has slack: its blows shake the whole arm. weighed: by what the model leaves.
+    handled: rows (n,) by run in which a load is picked up or put down, which takes a touch.
     """
     if any(a.score.candidate.effect == "backlash" for a in judged.accepted):
         return None
     which, runs = observed_runs(evidence), evidence.runs
     named = [a.score.candidate for a in judged.accepted]
     soft = {c.joint for c in named if c.effect == "joint_elasticity" and c.joint is not None}
-    found = _loud(evidence, judged.model) or _faint(weighed, judged.model, soft)
+    found = _loud(evidence, judged.model, handled) or _faint(weighed, judged.model, handled, soft)
     if found is None:
         return None
     force, worth = found
@@ -92,13 +96,16 @@ def pushed(evidence: Evidence, judged: Judged, weighed: Evidence) -> Pushed | No
     return Pushed(force, worth, tuple(free[r] for r in which))
 
 
-def _loud(evidence: Evidence, model: Directions) -> tuple[Contact, float] | None:
+def _loud(evidence: Evidence, model: Directions, busy: Mapping[int, Flags]) -> tuple[Contact, float] | None:
     """Return pushes that leave the noise at once, where the model is fitted to the quiet rows, and nats."""
     which, scales, runs = observed_runs(evidence), evidence.scales, evidence.runs
     coulomb, (bent, quiet) = evidence.setup.friction[:, 0], _left_by_quiet(evidence, model)
     left = dict(zip(which, quiet, strict=True))
     fitted = {r: scaled(runs[r], e, scales, coulomb) for r, e in zip(which, bent, strict=True)}
-    found = [e for e in episodes(runs, which, quiet, scales, coulomb) if _stays(e, fitted[e.run][e.rows])]
+    found = [
+        e for e in episodes(runs, which, quiet, scales, coulomb)
+        if _stays(e, fitted[e.run][e.rows]) and clear_of(busy, e.run, e.rows)
+    ]  # fmt: skip
     # half the squared residuals over the noise, memory taken off
     worth = 0.5 * sum(e.worth for e in found) / float(np.mean(scales.inflation))
     sigma = {r: uncertainty(runs[r], scales, coulomb) for r in which}
@@ -124,10 +131,12 @@ def _stays(left_out: Episode, fitted: Array) -> bool:
     return float(np.mean(fitted**2, axis=0).sum()) > _STAYS * float(left_out.strength.sum())
 
 
-def _faint(weighed: Evidence, model: Directions, soft: set[int]) -> tuple[Contact, float] | None:
+def _faint(
+    weighed: Evidence, model: Directions, busy: Mapping[int, Flags], soft: set[int]
+) -> tuple[Contact, float] | None:
     """Return pushes that stand out over the time they last alone, and their nats; soft: see `faint`."""
     left = residuals(weighed, model)
-    found = faint(weighed, left, soft)
+    found = faint(weighed, left, busy, soft)
     if not found:
         return None
     scales, coulomb, runs = weighed.scales, weighed.setup.friction[:, 0], weighed.runs

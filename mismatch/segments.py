@@ -1,6 +1,6 @@
 """Stretches of time in which something is there: a first guess, the likeliest states, what counts as one."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -71,6 +71,11 @@ def marginal(matrix: Array, right: Array, std: Array) -> tuple[Array, Array]:
     a, b = matrix * np.outer(std, std) + np.eye(len(std)), right * std
     size = np.linalg.solve(a, b[:, :, None])[:, :, 0]
     return 0.5 * np.einsum("ik,ik->i", b, size) - 0.5 * np.linalg.slogdet(a)[1], std * size
+
+
+def clear_of(busy: Mapping[int, Mask], run: int, rows: slice) -> bool:
+    """Return whether a stretch of rows of a run has none that are busy (n,), by run."""
+    return run not in busy or not busy[run][rows].any()
 
 
 def apart(

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from rows_by_hand import rows, scales
 
-from residuum.mismatch.carried import carried, unloaded
+from residuum.mismatch.carried import carried, handled, unloaded
 from residuum.mismatch.evidence import Evidence, gather, renewed
 from residuum.mismatch.explain import Task, explain
 from residuum.mismatch.load_checks import LONG, _beside_one_joint, _longest
@@ -70,6 +70,10 @@ def test_a_load_that_comes_and_goes_is_found_with_its_times_and_its_mass(arm, he
     assert mass["std"] == pytest.approx(0.15 * 1.5, rel=0.1)  # the gains' doubt
     (torque,) = found.torque
     assert np.abs(torque[~within(rows.time, [(a - 0.5, b + 0.5) for a, b in SPANS])]).max() == 0.0
+    close = handled(healthy, found)[0]
+    ends = np.ravel(SPANS)
+    np.testing.assert_array_equal(close[[np.argmin(np.abs(rows.time - t)) for t in ends]], True)
+    assert not close[np.abs(rows.time[:, None] - ends).min(axis=1) > 1.0].any()
 
 
 def test_a_short_stretch_of_something_lighter_is_not_of_the_load(healthy) -> None:

@@ -17,9 +17,9 @@ def friction(qd):
     return np.array([5.0, 6.0, 4.0]) * np.tanh(qd / 1e-3) + 2.0 * qd
 
 
-def found(evidence):
+def found(evidence, busy=None):
     weighed = reweighed(evidence, model := nuisance(evidence))
-    return faint(weighed, residuals(weighed, model))
+    return faint(weighed, residuals(weighed, model), busy or {})
 
 
 def during(time):
@@ -37,6 +37,16 @@ def test_a_push_below_the_noise_is_found(arm, moved) -> None:
     assert time[min(s.rows.start for s in stretches)] == pytest.approx(START, abs=0.4)
     assert time[max(s.rows.stop for s in stretches) - 1] == pytest.approx(END, abs=0.4)
     assert np.linalg.norm(stretches[0].force - FORCE) < 0.5 * np.linalg.norm(FORCE)
+
+
+def test_a_push_while_a_load_is_handed_over_is_part_of_that(arm, moved) -> None:
+    pushed = moved(
+        friction, 0.5, 3, beside=lambda time, q: during(time) * (forces(arm.physics, q, 3) @ FORCE)
+    )
+    (rows,) = pushed.runs
+    assert found(pushed, {0: np.abs(rows.time - 32.5) < 1.6}) == []
+    elsewhere = found(pushed, {0: np.abs(rows.time - 20.0) < 1.6})
+    assert [s.rows for s in elsewhere] == [s.rows for s in found(pushed)]
 
 
 def stretch(nats, start, by_joint=(8.0, 9.0, 7.0)):
