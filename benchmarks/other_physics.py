@@ -8,11 +8,15 @@ feed-forward. A quarter is clean, half have a reference, rates are 125 and 500 H
 of what an effect changes over that of the sensors' noise, both below 10 Hz, on the joint where that is
 largest; what is fitted anyway (without a reference: offset, Coulomb and viscous friction) is taken off for the
 visible size.
+
+--inverse: robots of inverse dynamics and added friction instead (foreign/inverse.py), a fifth of them with
+something that the catalogue has no name for.
 """
 
 import argparse
 import sys
 from concurrent.futures import as_completed
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +24,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 from foreign.arm import Change, Healthy, record
-from foreign.changes import ALWAYS, LARGE, REFERENCE, Scene
+from foreign.changes import ALWAYS, GIVEN, LARGE, OUTSIDE, REFERENCE, Scene
+from foreign.inverse import along
 from foreign.paths import path
 from numpy.typing import NDArray
 
@@ -40,6 +45,8 @@ FRICTION = {
     "ur10e": (np.array([11.0, 13.0, 8.0, 2.4, 2.0, 1.9]), np.array([10.0, 12.0, 7.0, 1.9, 1.6, 1.5])),
 }
 CLEAN, LARGE_ARM, SAME_PATH = 0.25, 0.3, 0.4
+#: Of robots of inverse dynamics: with something outside the catalogue; rad/s in which friction turns.
+STRANGE, TURNS = 0.15, (0.002, 0.01, 0.03)
 
 
 def healthy_robot(rng: np.random.Generator, name: str, reference: bool) -> Healthy:
@@ -56,26 +63,31 @@ def healthy_robot(rng: np.random.Generator, name: str, reference: bool) -> Healt
     )  # fmt: skip
 
 
-def make(out: Path, number: int, seed: int) -> None:
+def make(out: Path, number: int, seed: int, inverse: bool) -> None:
     """Simulate one case and write it down."""
     rng, case = np.random.default_rng([seed, number]), f"{number + 1:03d}"
     reference, name = bool(number % 2), "ur10e" if rng.random() < LARGE_ARM else "ur5e"
     robot, rate, seconds = load_robot(name)[0], int(rng.choice([125, 500])), rng.uniform(30, 60)
-    healthy = healthy_robot(rng, name, reference)
+    healthy, simulate = healthy_robot(rng, name, reference), record
     some = ALWAYS + (REFERENCE if reference else ())
-    scene = Scene(rng, robot, healthy, int(rng.integers(6)))
-    change = Change() if rng.random() < CLEAN else some[int(rng.integers(len(some)))](scene)
+    if inverse:
+        healthy, simulate = replace(healthy, soft=float(rng.choice(TURNS))), along
+        some += GIVEN
+    scene, drawn = Scene(rng, robot, healthy, int(rng.integers(6))), rng.random()
+    strange = inverse and drawn > 1 - STRANGE
+    some = OUTSIDE if strange else some
+    change = Change() if drawn < CLEAN else some[int(rng.integers(len(some)))](scene)
     home = np.array([0, -1.4, 1.3, -1.5, -1.5, 0]) + rng.uniform(-0.3, 0.3, 6)
     same, runs, before = rng.random() < SAME_PATH, int(rng.integers(1, 4)), list[Recording]()
     folder, observed = out / "cases" / case, list[Recording]()
     for k in range(runs):
         way, noise, warmer = path(rng, seconds, home), int(rng.integers(2**31)), 8.0 * k
-        observed.append(record(robot, healthy, change, way, rate, noise, warmer))
-        before.append(record(robot, healthy, Change(), way, rate, noise, warmer))
+        observed.append(simulate(robot, healthy, change, way, rate, noise, warmer))
+        before.append(simulate(robot, healthy, Change(), way, rate, noise, warmer))
         write(folder / f"observed_{k + 1}.parquet", observed[-1])
         if reference:
             other = way if same else path(rng, seconds, home)
-            again = record(robot, healthy, Change(), other, rate, noise + 1, warmer)
+            again = simulate(robot, healthy, Change(), other, rate, noise + 1, warmer)
             write(folder / f"reference_{k + 1}.parquet", again)
     files = {kind: sorted(x.name for x in folder.glob(f"{kind}_*")) for kind in ("observed", "reference")}
     label = {"robot": name, "recordings": files["observed"], "reference": files["reference"]}
@@ -88,7 +100,8 @@ def make(out: Path, number: int, seed: int) -> None:
         "parameters": change.parameters,
     }
     truth = {
-        "case": case, "kind": "catalogue" if change.effect else "clean", "robot": name, "rate": rate,
+        "case": case, "kind": "outside" if strange else "catalogue" if change.effect else "clean",
+        "robot": name, "rate": rate,
         "reference": reference, "effects": [effect] if change.effect else [], "ratio": ratio.tolist(),
         "beside_friction": beside.tolist(), "soft": healthy.soft, "curved": healthy.curved,
     }  # fmt: skip
@@ -144,10 +157,11 @@ def main() -> None:
     parser.add_argument("--seed", type=int, required=True)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--workers", type=int, default=1)
+    parser.add_argument("--inverse", action="store_true")
     a = parser.parse_args()
     missing = [k for k in range(a.cases) if not (a.out / "sealed" / f"{k + 1:03d}.json").exists()]
     with pool(a.workers) as executor:
-        jobs = [executor.submit(make, a.out, k, a.seed) for k in missing]
+        jobs = [executor.submit(make, a.out, k, a.seed, a.inverse) for k in missing]
         for done, job in enumerate(as_completed(jobs), start=1):
             job.result()
             print(f"\rsimulated {done}/{len(missing)} ", end="", file=sys.stderr, flush=True)

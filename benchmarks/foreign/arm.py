@@ -52,12 +52,27 @@ def nothing(_q: Array, _qd: Array, _load: Array, _hot: Array) -> Array:
 
 
 @dataclass(frozen=True)
+class Gear:
+    """What the changed joint's gear does beside holding and dragging: nothing, or one of these.
+
+    stiffness: Nm/rad; gap: half of its slack, rad; bristle: rad over which friction builds up (Dahl); late: s
+    by which friction's sign is late.
+    """
+
+    stiffness: float = 0.0
+    gap: float = 0.0
+    bristle: float = 0.0
+    late: float = 0.0
+
+
+@dataclass(frozen=True)
 class Change:
     """What is different: name, joints (1..6; empty where they are not scored) and the true parameters.
 
     dry, drag: change of friction loss, and torque that drags; delay: s that currents come late; held: spans of
     the recording (shares) in which the load is there (None: always); push: link and place on it, m; force: N by
-    share of the recording.
+    share of the recording. Only of inverse.py: gear; later: torque (T, 6) Nm of time (T,), q and the sign of
+    friction (T, 6), which the catalogue has no name for.
     """
 
     effect: str = ""
@@ -75,17 +90,19 @@ class Change:
     delay: float = 0.0
     push: tuple[int, Array] = (6, np.zeros(3))
     force: Callable[[float], Array | None] = lambda _share: None
+    gear: Gear = Gear()
+    later: Callable[[Array, Array, Array], Array] | None = None
 
 
 def record(
     robot: Robot, healthy: Healthy, change: Change, path: Array, rate: int, seed: int, warmer: float
 ) -> Recording:
     """Simulate 2 ms a step along a path (T, 6); return it at a rate, Hz. warmer: deg C above cold."""
-    model, plain = _models(robot, healthy, change)
+    model, plain = models(robot, healthy, change)
     data, empty = mujoco.MjData(model), _Load(model, change)
     gains = np.array([x.drive_gain for x in robot.joint])
     speed = np.gradient(path, STEP, axis=0)
-    ahead = _inverse(plain, path, speed, np.gradient(speed, STEP, axis=0))
+    ahead = inverse(plain, path, speed, np.gradient(speed, STEP, axis=0))
     time = np.arange(len(path)) * STEP
     hot = healthy.cold + warmer + healthy.heat * WARM * (1 - np.exp(-time[:, None] / HEATING))
     data.qpos[:], sum_ = path[0] + change.encoder, np.zeros(6)
@@ -101,16 +118,16 @@ def record(
             + STIFF * (error + 4 * sum_) + DAMP * (speed[i] - qd[i])
         )  # fmt: skip
         state = q[i], qd[i], ahead[i], hot[i]
-        model.dof_frictionloss[:] = np.maximum(_dry(healthy, qd[i]) + change.dry(*state), 0.05)
+        model.dof_frictionloss[:] = np.maximum(dry_level(healthy, qd[i]) + change.dry(*state), 0.05)
         data.qfrc_applied[:] = torque[i] - healthy.offset - change.drag(*state)
         _push(data, change, change.force(share))
         mujoco.mj_step(model, data, 2)
     if not np.isfinite(q).all():
         raise RuntimeError(f"{change.effect}: the simulation blew up")
-    return _sensed(time, q, qd, torque / gains / change.gain, hot, healthy, change, rate, seed)
+    return sensed(time, q, qd, torque / gains / change.gain, hot, healthy, change, rate, seed)
 
 
-def _models(robot: Robot, healthy: Healthy, change: Change) -> tuple[Any, Any]:
+def models(robot: Robot, healthy: Healthy, change: Change) -> tuple[Any, Any]:
     """Return the robot as it is, and as its controller takes it to be."""
     links = {}
     for k, factor in enumerate(healthy.masses, start=1):
@@ -140,12 +157,14 @@ class _Load:
             self.model.body_inertia[self.body] = here * self.whole[1]
 
 
-def _dry(healthy: Healthy, qd: Array) -> Array:
+def dry_level(healthy: Healthy, qd: Array) -> Array:
+    """Return dry friction (.., 6) Nm at speeds (.., 6)."""
     bends = 1 + 0.15 * np.exp(-((qd / 0.1) ** 2)) + 0.12 * np.sqrt(np.abs(qd)) if healthy.curved else 1.0
     return np.asarray(healthy.dry * bends)
 
 
-def _inverse(model: Any, q: Array, qd: Array, qdd: Array) -> Array:
+def inverse(model: Any, q: Array, qd: Array, qdd: Array) -> Array:
+    """Return the torque (T, 6) Nm of a motion by MuJoCo's inverse dynamics."""
     data, found = mujoco.MjData(model), np.empty_like(q)
     for i in range(len(q)):
         data.qpos[:], data.qvel[:], data.qacc[:] = q[i], qd[i], qdd[i]
@@ -161,10 +180,11 @@ def _push(data: Any, change: Change, force: Array | None) -> None:
     data.xfrc_applied[link, 3:] = np.cross(data.xmat[link].reshape(3, 3) @ place, at * np.ones(3))
 
 
-def _sensed(
+def sensed(
     time: Array, q: Array, qd: Array, current: Array, hot: Array, healthy: Healthy, change: Change,
     rate: int, seed: int,
 ) -> Recording:  # fmt: skip
+    """Return what sensors report, by a seed, at a rate (Hz), of angles, speeds, currents (T, 6) and deg C."""
     rng, late = np.random.default_rng(seed), round(change.delay / STEP)
     current = np.concatenate([np.repeat(current[:1], late, axis=0), current[: len(current) - late]])
     white, noise = rng.standard_normal(q.shape), np.zeros(q.shape)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from residuum.robots import Robot
 from residuum.virtual.model import RigidBody, link_body, tilted_gravity
 
-from .arm import Change, Healthy, State
+from .arm import Change, Gear, Healthy, State
 
 Array = NDArray[np.float64]
 
@@ -180,6 +180,58 @@ def viscous_friction(s: Scene) -> Change:
     return s.on_joint("viscous_friction", {"damping": more}, drag=lambda _q, qd, *_: s.only(more) * qd)
 
 
+def joint_elasticity(s: Scene) -> Change:
+    """A gear that winds up."""
+    s = replace(s, joint=int(s.rng.integers(0, 4)))
+    stiffness = float(np.exp(s.rng.uniform(np.log(3e3), np.log(2e4)))) * (1.0 if s.joint < 3 else 0.15)
+    return s.on_joint("joint_elasticity", {"stiffness": stiffness}, gear=Gear(stiffness=stiffness))
+
+
+def backlash(s: Scene) -> Change:
+    """A gear with slack."""
+    gap = s.rng.uniform(5e-4, 4e-3)
+    return s.on_joint("backlash", {"gap": 2 * gap}, gear=Gear(gap=gap))
+
+
+def presliding(s: Scene) -> Change:
+    """Friction that builds up over a travel."""
+    bristle = s.rng.uniform(0.005, 0.03)
+    return s.on_joint("presliding_hysteresis", {"zs": bristle}, gear=Gear(bristle=bristle))
+
+
+def velocity_lag(s: Scene) -> Change:
+    """Friction whose sign is late."""
+    late = s.rng.uniform(0.006, 0.02)
+    return s.on_joint("velocity_lag", {"lag": late}, gear=Gear(late=late))
+
+
+def step(s: Scene) -> Change:
+    """An offset that begins during the recording."""
+    torque = s.sign * s.rng.uniform(0.4, 1.0) * LARGE[s.joint]
+    return s.on_joint(
+        "outside.step", {"torque": torque},
+        later=lambda time, *_: np.outer(time > 0.4 * time[-1], s.only(torque)),
+    )  # fmt: skip
+
+
+def neighbour(s: Scene) -> Change:
+    """A torque that follows another joint's angle."""
+    torque, other = s.sign * s.rng.uniform(0.4, 1.2) * LARGE[s.joint], (s.joint + 1) % 6
+    return s.on_joint(
+        "outside.neighbour", {"torque": torque},
+        later=lambda _time, q, _sign: np.outer(np.sin(6 * q[:, other]), s.only(torque)),
+    )  # fmt: skip
+
+
+def breathing(s: Scene) -> Change:
+    """Friction that swells and falls every eleven seconds."""
+    torque = s.rng.uniform(0.1, 0.3) * s.healthy.dry[s.joint]
+    return s.on_joint(
+        "outside.breathing", {"torque": torque},
+        later=lambda time, _q, sign: s.only(torque) * sign * np.sin(2 * np.pi * time / 11)[:, None],
+    )  # fmt: skip
+
+
 #: Those that need no reference, and those that do.
 ALWAYS: tuple[Callable[[Scene], Change], ...] = (
     payload, link_inertial, base_tilt, rotor_inertia, offset, cable_spring, encoder_offset, stribeck,
@@ -187,3 +239,6 @@ ALWAYS: tuple[Callable[[Scene], Change], ...] = (
     torque_ripple, time_delay, external_contact,
 )  # fmt: skip
 REFERENCE: tuple[Callable[[Scene], Change], ...] = (drive_gain, coulomb_friction, viscous_friction)
+#: What only a motion that is given can have (inverse.py), and what no catalogue has.
+GIVEN: tuple[Callable[[Scene], Change], ...] = (joint_elasticity, backlash, presliding, velocity_lag)
+OUTSIDE: tuple[Callable[[Scene], Change], ...] = (step, neighbour, breathing)
