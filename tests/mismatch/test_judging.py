@@ -289,6 +289,15 @@ def test_a_rotor_does_not_lose_nearly_all_of_its_inertia(published, change, beli
     assert (implausible(evidence, test) == "") == believed
 
 
+@pytest.mark.parametrize(("viscous", "believed"), [(-0.03, True), (-0.25, False)])
+def test_no_friction_changes_by_a_quarter_of_itself_a_degree(viscous, believed) -> None:
+    warm = Candidate("temperature_dependent_friction", 0, (0, 1))
+    size, std = np.array([0.2, viscous * 5.0]), np.array([0.02, 0.1])
+    evidence = SimpleNamespace(setup=SimpleNamespace(friction=np.array([[8.0, 5.0]])))
+    test = Scored(warm, np.ones(4), 50.0, size, std)
+    assert (implausible(evidence, test) == "") == believed
+
+
 def test_a_gear_that_gives_way_turns_the_links_of_other_joints() -> None:
     soft = Candidate("joint_elasticity", 2, (0, 1), whole=True)
     gear = [Accepted(scored([900, 1100], evidence=2000.0, candidate=soft), (), (), 0.5)]
