@@ -39,7 +39,7 @@ from .refusal import bad_data
 from .regions import regions
 from .result import Explanation, NextMotion, Proof, Source
 from .selection import Directions
-from .sharpen import sharpened, without
+from .sharpen import settled, sharpened, without
 from .unknown import unknowns
 
 Array = NDArray[np.float64]
@@ -134,7 +134,8 @@ def _explained(
     sources: tuple[Source, ...], lacks: tuple[str, ...], progress: Progress,
 ) -> Explanation:  # fmt: skip
     t = _told(recorded, progress)
-    evidence, judged, weighed = t.evidence, t.judged, t.weighed
+    evidence, weighed = t.evidence, t.weighed
+    judged = settled(weighed, t.judged)
     progress("what is left")
     which = observed_runs(evidence)
     names, runs = [recordings[r].name for r in which], [t.every.runs[r] for r in which]

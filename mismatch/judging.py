@@ -237,6 +237,8 @@ def shadow(test: Scored, accepted: Sequence[Accepted], joints: int) -> str:
             least = max(least, (np.pi * _FASTEST * a.score.size[0]) ** 2 * a.score.evidence)
         if first.effect in MASSES and c.effect == "drive_gain":  # a mass scales with the gains
             least = SHADOW / joints * a.score.evidence
+        if first.effect in RIGID and c.effect == "nonlinear_viscous":
+            continue  # what a rigid body's form leaves turns with its torques, not with the speed alone
         small = test.evidence < least and test.consistency < OWN
         if first.joint in (None, c.joint) and small:
             return f"is {100 * test.evidence / a.score.evidence:.1f} % of what {first.effect} explains there"

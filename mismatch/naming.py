@@ -34,7 +34,7 @@ EVERY_GEAR = {"stribeck": 0.01, "presliding": 0.01, "lag": 0.03}
 MUCH, WIDE, PROMPT = 0.3, 0.04, 0.006
 #: and how it passes zero speed may rise by this much of it above it, since some bends are sharper than a
 #: smooth sign's.
-PEAK = 0.05
+PEAK = 0.02
 #: rad; over so short a travel the whole Coulomb level may build up, over more of it less and less.
 SHORTEST = 3e-4
 #: Terms of which less explains as much the longer they take: on a grid, of size in steps.

@@ -1,7 +1,7 @@
 """Nonlinear values between the points of their grid, with their uncertainty (variable projection)."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from .candidates import Candidate, of_key
 from .evidence import Evidence
@@ -39,6 +39,20 @@ def sharpened(evidence: Evidence, judged: Judged) -> dict[int, Sharp]:
         value, std = peak(places, [s.evidence for s in some])
         found[k] = Sharp({free[0]: value}, std)
     return found
+
+
+def settled(evidence: Evidence, judged: Judged) -> Judged:
+    """Return findings with the coefficients that they have once all others are known, too.
+
+    evidence: as of `sharpened`.
+    """
+    if len(judged.accepted) < 2:
+        return judged
+    found = []
+    for k, a in enumerate(judged.accepted):
+        (last,) = scored(evidence, without(judged, k), [a.score.candidate])
+        found.append(replace(a, score=replace(a.score, size=last.size, std=last.std)))
+    return replace(judged, accepted=tuple(found))
 
 
 def _but(candidate: Candidate, name: str) -> dict[str, float]:
