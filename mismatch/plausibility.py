@@ -35,8 +35,8 @@ SOFTEST = 1e3
 SYNCHRONOUS = 0.003
 #: Of its size, friction as a whole has to rise by this share above where it ends: else it only starts gently.
 _PEAK = 0.3
-#: Of a joint's friction, a degree: twice the catalogue's steepest.
-STEEPEST = 0.05
+#: Of a joint's friction, a degree: twice the catalogue's steepest fall; warm gears hardly rub more.
+STEEPEST, RISING = 0.05, 0.01
 #: A rotor is there: it may have lost this part of its published inertia.
 LOST = 0.9
 
@@ -53,9 +53,10 @@ def implausible(evidence: Evidence, test: Scored) -> str:
     if c.effect == "time_delay" and c.joint is not None and test.size[0] < SYNCHRONOUS:
         return f"{1e3 * test.size[0]:.1f} ms late is as recorders have it"
     if c.effect == "temperature_dependent_friction" and c.joint is not None:
-        part = (np.abs(test.size[:2]) - 2 * test.std[:2]) / evidence.setup.friction[c.joint]
-        if (steep := float(part.max())) > STEEPEST:
-            return f"friction that changes by {100 * steep:.0f} % or more a degree is no gear's"
+        level, surely = evidence.setup.friction[c.joint], 2 * test.std[:2]
+        fall, rise = (float(np.max((way * test.size[:2] - surely) / level)) for way in (-1, 1))
+        if fall > STEEPEST or rise > RISING:
+            return f"friction that changes by {100 * max(fall, rise):.0f} % or more a degree is no gear's"
     if c.effect == "rotor_inertia" and c.joint is not None:
         whole = evidence.setup.physics.reflected[c.joint]
         if whole > 0 and test.size[0] < -LOST * whole:

@@ -289,10 +289,14 @@ def test_a_rotor_does_not_lose_nearly_all_of_its_inertia(published, change, beli
     assert (implausible(evidence, test) == "") == believed
 
 
-@pytest.mark.parametrize(("viscous", "believed"), [(-0.03, True), (-0.25, False)])
-def test_no_friction_changes_by_a_quarter_of_itself_a_degree(viscous, believed) -> None:
+@pytest.mark.parametrize(
+    ("level", "viscous", "believed"),
+    [(-0.02, -0.03, True), (-0.02, -0.25, False), (0.008, -0.03, True), (0.035, -0.03, False)],
+)
+def test_friction_falls_as_a_gear_warms_and_not_by_much(level, viscous, believed) -> None:
+    """Parts of it a degree, of which two standard deviations are 0.5 % and 2 %."""
     warm = Candidate("temperature_dependent_friction", 0, (0, 1))
-    size, std = np.array([0.2, viscous * 5.0]), np.array([0.02, 0.1])
+    size, std = np.array([level * 8.0, viscous * 5.0]), np.array([0.02, 0.05])
     evidence = SimpleNamespace(setup=SimpleNamespace(friction=np.array([[8.0, 5.0]])))
     test = Scored(warm, np.ones(4), 50.0, size, std)
     assert (implausible(evidence, test) == "") == believed

@@ -112,7 +112,7 @@ def test_stribeck_against_presliding_is_seen_when_slow(rate) -> None:
     found = rate(("stribeck", 2), ("presliding_hysteresis", 2))
     assert found["small_reversals"] > found["full_range_sweep"]
     assert found["slow_ramps"] > found["full_range_sweep"]
-    assert max(found, key=found.get) in ("small_reversals", "slow_ramps")
+    assert max(found, key=found.get) in ("small_reversals", "slow_ramps", "slow_constant_speed")
 
 
 def test_drive_gain_against_payload_is_seen_with_a_known_load(rate) -> None:
