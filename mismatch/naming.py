@@ -239,10 +239,14 @@ def scored(evidence: Evidence, model: Directions, some: Sequence[Candidate]) -> 
     return found
 
 
+def added(evidence: Evidence, model: Directions, candidate: Candidate) -> Eliminated:
+    """Return a hypothesis' columns with a model eliminated from them, on all folds at once."""
+    return eliminate(evidence.sums, model, evidence.found.directions.take(candidate.columns), None)
+
+
 def worth(evidence: Evidence, model: Directions, candidate: Candidate) -> float:
     """Return the nats that a hypothesis adds to a model on all folds at once: the evidence of its score."""
-    directions = evidence.found.directions.take(candidate.columns)
-    return eliminate(evidence.sums, model, directions, None).evidence(range(len(directions)))
+    return added(evidence, model, candidate).evidence(range(len(candidate.columns)))
 
 
 def _consistency(whole: Eliminated, out: Sequence[Eliminated], columns: Sequence[int]) -> float:

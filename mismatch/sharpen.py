@@ -3,11 +3,13 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from .candidates import Candidate, of_key
 from .evidence import Evidence
 from .grid import peak
 from .judging import Judged
-from .naming import scored
+from .naming import added, scored
 from .selection import Directions
 
 
@@ -50,8 +52,9 @@ def settled(evidence: Evidence, judged: Judged) -> Judged:
         return judged
     found = []
     for k, a in enumerate(judged.accepted):
-        (last,) = scored(evidence, without(judged, k), [a.score.candidate])
-        found.append(replace(a, score=replace(a.score, size=last.size, std=last.std)))
+        c = a.score.candidate
+        size, covariance = added(evidence, without(judged, k), c).solve(range(len(c.columns)))
+        found.append(replace(a, score=replace(a.score, size=size, std=np.sqrt(np.diag(covariance)))))
     return replace(judged, accepted=tuple(found))
 
 

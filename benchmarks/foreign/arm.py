@@ -104,7 +104,7 @@ def record(
     speed = np.gradient(path, STEP, axis=0)
     ahead = inverse(plain, path, speed, np.gradient(speed, STEP, axis=0))
     time = np.arange(len(path)) * STEP
-    hot = healthy.cold + warmer + healthy.heat * WARM * (1 - np.exp(-time[:, None] / HEATING))
+    hot = heated(healthy, warmer, time)
     data.qpos[:], sum_ = path[0] + change.encoder, np.zeros(6)
     q, qd, torque = (np.empty_like(path) for _ in range(3))
     for i in range(len(path)):
@@ -155,6 +155,11 @@ class _Load:
             here = 1.0 if any(a <= share < b for a, b in self.spans) else 1e-6
             self.model.body_mass[self.body] = here * self.whole[0]
             self.model.body_inertia[self.body] = here * self.whole[1]
+
+
+def heated(healthy: Healthy, warmer: float, time: Array) -> Array:
+    """Return the gears' temperatures (T, 6), deg C, at times (T,) s."""
+    return np.asarray(healthy.cold + warmer + healthy.heat * WARM * (1 - np.exp(-time[:, None] / HEATING)))
 
 
 def dry_level(healthy: Healthy, qd: Array) -> Array:

@@ -14,7 +14,7 @@ from scipy.signal import butter, lfilter, sosfiltfilt
 from residuum.recordings import Recording
 from residuum.robots import Robot
 
-from .arm import HEATING, WARM, Change, Healthy, dry_level, inverse, models, sensed
+from .arm import Change, Healthy, dry_level, heated, inverse, models, sensed
 from .changes import LARGE
 from .paths import STEP
 
@@ -34,7 +34,7 @@ def along(
     model.dof_frictionloss[:], model.dof_damping[:] = 0.0, 0.0
     time = np.arange(len(path)) * STEP
     q = sosfiltfilt(butter(3, SMOOTH, fs=1 / STEP, output="sos"), path, axis=0)
-    hot = healthy.cold + warmer + healthy.heat * WARM * (1 - np.exp(-time[:, None] / HEATING))
+    hot = heated(healthy, warmer, time)
     real = q + change.encoder
     torque = _held(robot, healthy, change, real, inverse(model, real, *_slopes(q)))
     torque = torque - _pushes(model, change, real)
