@@ -69,21 +69,21 @@ class Stretch:
 
 
 def faint(
-    weighed: Evidence, left: Mapping[int, Array], busy: Mapping[int, NDArray[np.bool_]],
+    weighed: Evidence, left: Mapping[int, Array], handled: Mapping[int, NDArray[np.bool_]],
     soft: Collection[int] = (),
 ) -> list[Stretch]:  # fmt: skip
     """Return the faint pushes in what a model leaves (n, N) Nm of runs, or none.
 
     Each pays for having been sought everywhere, and they are more than what comes and goes in the reference;
     together they have the evidence for a name. None, too, unless they are nearly all that comes and goes, and
-    half of it reaches more than one joint. weighed: by what the model leaves. busy: rows (n,) by observed run
-    in which nothing is sought. soft: joints (0-based) whose
-    gear was found to give way: what is left there is its own.
+    half of it reaches more than one joint. weighed: by what the model leaves. handled: rows (n,) by observed
+    run in which nothing is sought. soft: joints (0-based) whose gear was found to give way: what is left
+    there is its own.
     """
     count, usual, every = 1, 0.0, list[Stretch]()
     for run, (tried, some) in zip(left, each(lambda r: _tried(weighed, r, left[r]), left), strict=True):
         if weighed.observed[run]:
-            count, every = count + tried, every + [s for s in some if clear_of(busy, run, s.rows)]
+            count, every = count + tried, every + [s for s in some if clear_of(handled, run, s.rows)]
         else:
             usual = max([usual, *(s.worth for s in some)])
     times = EXTRAPOLATED if weighed.has_reference else 1.0

@@ -96,7 +96,9 @@ def pushed(
     return Pushed(force, worth, tuple(free[r] for r in which))
 
 
-def _loud(evidence: Evidence, model: Directions, busy: Mapping[int, Flags]) -> tuple[Contact, float] | None:
+def _loud(
+    evidence: Evidence, model: Directions, handled: Mapping[int, Flags]
+) -> tuple[Contact, float] | None:
     """Return pushes that leave the noise at once, where the model is fitted to the quiet rows, and nats."""
     which, scales, runs = observed_runs(evidence), evidence.scales, evidence.runs
     coulomb, (bent, quiet) = evidence.setup.friction[:, 0], _left_by_quiet(evidence, model)
@@ -104,7 +106,7 @@ def _loud(evidence: Evidence, model: Directions, busy: Mapping[int, Flags]) -> t
     fitted = {r: scaled(runs[r], e, scales, coulomb) for r, e in zip(which, bent, strict=True)}
     found = [
         e for e in episodes(runs, which, quiet, scales, coulomb)
-        if _stays(e, fitted[e.run][e.rows]) and clear_of(busy, e.run, e.rows)
+        if _stays(e, fitted[e.run][e.rows]) and clear_of(handled, e.run, e.rows)
     ]  # fmt: skip
     # half the squared residuals over the noise, memory taken off
     worth = 0.5 * sum(e.worth for e in found) / float(np.mean(scales.inflation))
@@ -132,11 +134,11 @@ def _stays(left_out: Episode, fitted: Array) -> bool:
 
 
 def _faint(
-    weighed: Evidence, model: Directions, busy: Mapping[int, Flags], soft: set[int]
+    weighed: Evidence, model: Directions, handled: Mapping[int, Flags], soft: set[int]
 ) -> tuple[Contact, float] | None:
     """Return pushes that stand out over the time they last alone, and their nats; soft: see `faint`."""
     left = residuals(weighed, model)
-    found = faint(weighed, left, busy, soft)
+    found = faint(weighed, left, handled, soft)
     if not found:
         return None
     scales, coulomb, runs = weighed.scales, weighed.setup.friction[:, 0], weighed.runs

@@ -64,7 +64,7 @@ def first_guesses(runs: Sequence[Sums], std: Array, most: int) -> list[tuple[int
 
 
 def marginal(matrix: Array, right: Array, std: Array) -> tuple[Array, Array]:
-    """Return by how many nats (S,) parameters are marginal than none, and the parameters (S, k).
+    """Return by how many nats (S,) parameters are likelier than none, and the parameters (S, k).
 
     matrix (S, k, k), right (S, k): normal equations; std (k,): prior widths; of the log marginal likelihood.
     """
@@ -73,9 +73,9 @@ def marginal(matrix: Array, right: Array, std: Array) -> tuple[Array, Array]:
     return 0.5 * np.einsum("ik,ik->i", b, size) - 0.5 * np.linalg.slogdet(a)[1], std * size
 
 
-def clear_of(busy: Mapping[int, Mask], run: int, rows: slice) -> bool:
-    """Return whether a stretch of rows of a run has none that are busy (n,), by run."""
-    return run not in busy or not busy[run][rows].any()
+def clear_of(handled: Mapping[int, Mask], run: int, rows: slice) -> bool:
+    """Return whether a stretch of rows of a run has none in which a load is handled (n,), by run."""
+    return run not in handled or not handled[run][rows].any()
 
 
 def apart(

@@ -5,6 +5,8 @@ inertias too small and lends what is left to others (errors in variables). Recor
 recorded angles know it together better than either alone.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import filtfilt
@@ -26,24 +28,30 @@ _MOVES, _ENOUGH = 0.01, 50
 def calm_speeds(recording: Recording) -> Array:
     """Return speeds (T, M), rad/s, without delay and what is faster than FASTEST: of `qd` and of `q`."""
     if recording.qd is None:
-        return _smooth(recording, recording.q, Kernel(min(FASTEST, recording.rate / SAMPLES_PER_PERIOD)), 1)
+        kernel = Kernel(min(FASTEST, recording.rate / SAMPLES_PER_PERIOD))
+        (slope,) = _smooth(recording, kernel, {1: recording.q})
+        return slope
     kernel = Kernel(min(FASTEST, recording.rate / _SAMPLES))
-    found, slope = _smooth(recording, recording.qd, kernel, 0), _smooth(recording, recording.q, kernel, 1)
+    found, slope = _smooth(recording, kernel, {0: recording.qd, 1: recording.q})
     moves = np.abs(found) > _MOVES
     return found + _better(recording, slope - found, recording.qd - found, moves, kernel)
 
 
-def _smooth(recording: Recording, source: Array, kernel: Kernel, slope: int) -> Array:
-    """Smooth samples (T, M), or their slope."""
-    time = recording.timestamp
-    filtering, found = Filter(kernel), np.zeros_like(source)
+def _smooth(recording: Recording, kernel: Kernel, sources: Mapping[int, Array]) -> list[Array]:
+    """Smooth samples (T, M), by the slope that is taken of them."""
+    time, slopes = recording.timestamp, tuple(sources)
+    filtering, found = Filter(kernel), [np.zeros_like(x) for x in sources.values()]
     for stretch in segments(time, GAP / recording.rate):
-        own, values, out = time[stretch], source[stretch], found[stretch]
+        own, pairs = (
+            time[stretch],
+            [(x[stretch], y[stretch]) for x, y in zip(sources.values(), found, strict=True)],
+        )
         if len(own) < 4:
             continue
         for some, samples in batches(own, own, kernel):
-            (weights,) = filtering.weights(own[samples], own[some], (slope,))
-            out[some] = weights @ values[samples]
+            every = filtering.weights(own[samples], own[some], slopes)
+            for weights, (values, out) in zip(every, pairs, strict=True):
+                out[some] = weights @ values[samples]
     return found
 
 
