@@ -13,13 +13,12 @@ from .candidates import Candidate, Key
 from .coverage import SLOW
 from .evidence import Evidence
 from .firm import beside_firm
-from .local import at_one_place
+from .local import uneven
 from .masses import BODIES, INERTIAL, MASSES_OFF, Refusals, all_off, unmoved
 from .naming import Scored, at_best, chosen, nuisance, ranked, scored, steadiness
 from .pace import paceless
 from .plausibility import (
     NEAR_ZERO,
-    SYNCHRONOUS,
     implausible,
     is_short,
     misshapen,
@@ -27,6 +26,7 @@ from .plausibility import (
     of_all_joints,
     of_friction,
     peakless,
+    synchronous,
 )  # fmt: skip
 from .selection import Directions
 from .share import Share, share_of
@@ -73,24 +73,19 @@ class Accepted:
     """A hypothesis that stands, the names that do as well, and those that it explains away.
 
     rivals: (rival, nats behind, steadiness of the lead). share: of what was left unexplained on its joints.
+    is_finding: it is physics that is missing, and not the imprecision that every baseline or recorder has.
     """
 
     score: Scored
     alike: tuple[Candidate, ...]
     rivals: tuple[tuple[Candidate, float, float], ...]
     share: float
+    is_finding: bool = True
 
     @property
     def names(self) -> list[str]:
         """Effects that do as well as this one."""
         return list(dict.fromkeys(c.effect for c in self.alike))
-
-    @property
-    def is_finding(self) -> bool:
-        """Whether it is physics that is missing, and not the imprecision that every baseline has."""
-        c = self.score.candidate
-        small = c.effect == "time_delay" and self.score.size[0] < SYNCHRONOUS
-        return c.effect != "base_free" and not small
 
 
 @dataclass(frozen=True)
@@ -175,9 +170,14 @@ def judge(
         if unshown := [c for c in evidence.found.unshown if c.joint == best.candidate.joint]:
             others += at_best(evidence, fitted, unshown)
         alike, rivals = _rivals(evidence, fitted, best, others)
-        accepted.append(Accepted(test, alike, rivals, part.explained))
+        accepted.append(Accepted(test, alike, rivals, part.explained, _is_finding(weighed, test)))
         model = chosen(model, evidence, test.candidate)
     return Judged(tuple(accepted), model, tuple(refused), masses[0])
+
+
+def _is_finding(evidence: Evidence, test: Scored) -> bool:
+    c = test.candidate
+    return c.effect != "base_free" and not (c.effect == "time_delay" and synchronous(evidence, test))
 
 
 def _refused(
@@ -189,7 +189,7 @@ def _refused(
         or implausible(weighed, test)
         or shadow(test, accepted, weighed.setup.space.dof)
         or bodiless(weighed, model, test)
-        or at_one_place(weighed, model, test)
+        or uneven(weighed, model, test)
         or paceless(weighed, model, test)
         or peakless(weighed, model, test)
     )

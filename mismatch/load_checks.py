@@ -7,6 +7,7 @@ from .grams import regime, weights
 from .held import TEN, WIDTHS, Held
 from .physics import fitted_force, forces
 from .segments import Mask, sums_of
+from .whitening import REST
 
 Array = NDArray[np.float64]
 
@@ -24,6 +25,9 @@ REACH = 0.5
 EVIDENCE, STRETCH = 30.0, 3.0
 #: Of the squared residuals in its stretches, and of what a free force at the flange explains of them.
 WHOLE, FORCE = 0.9, 0.9
+#: A joint shows it, or something: its median torque there over that in pauses. The load leaves less than this
+#: part of it; rows in motion that tell.
+SHOWS, LEFT, _ROWS = 3.0, 0.6, 20
 #: Nats that joints in motion have beside the one that shows it most.
 SECOND = 10.0
 #: A stretch's own mass over that of all, and the share of stretches that lie between.
@@ -49,7 +53,7 @@ def objection(found: Held) -> str:
     force, whole = _explained(found)
     if force < FORCE or whole < WHOLE:
         return f"explains {100 * force:.0f} % of what a free force does, and {100 * whole:.0f} % of all"
-    return ""
+    return _on_each_joint(found)
 
 
 def unlike_a_load(value: Array, covariance: Array) -> str:
@@ -123,6 +127,25 @@ def _beside_one_joint(found: Held) -> float:
         np.sum(weights(x.rows, found.evidence.noise) * y**2 * (regime(x.rows) < 2), axis=0) for x, y in each
     )
     return 0.5 * float(np.sum(nats) - np.max(nats))
+
+
+def _on_each_joint(found: Held) -> str:
+    """Return in words that a joint shows something that is not the load, while that is held; or nothing.
+
+    A push that mostly points down is much of a load, but moves joints that no load does. Medians, since
+    whoever hands it over touches the arm for a moment; in motion, since static friction holds a load too.
+    """
+    held, left, load = np.concatenate(found.held), np.concatenate(found.left), np.concatenate(found.load)
+    moving = np.concatenate([regime(x.rows) < REST for x in found.runs])
+    for j, moves in enumerate(moving.T):
+        away, there = moves & ~held, moves & held
+        if min(away.sum(), there.sum()) < _ROWS:
+            continue
+        torques = left[away, j], left[there, j], (left - load)[there, j]
+        usual, shown, beyond = (float(np.median(np.abs(x))) for x in torques)
+        if shown > SHOWS * usual and beyond > LEFT * shown:
+            return f"leaves {beyond:.2g} of {shown:.2g} Nm on joint {j + 1}"
+    return ""
 
 
 def _explained(found: Held) -> tuple[float, float]:

@@ -1,21 +1,24 @@
-"""Whether a hypothesis explains the whole motion or only what one place of the joint does.
+"""Whether a hypothesis explains all that it acts on, or what one place, one joint or its noise does.
 
 A damaged tooth acts within a few degrees. What is smooth over the angle takes some of it, and so gains at
-that place alone; physics gains wherever it acts.
+that place alone; what moves all joints may take some of it, and so gains on that joint alone. A cable that
+crackles is loud within a range of angles, and a sum over loud rows is large by chance. Physics gains wherever
+it acts, and more than the noise that is there.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .acceptance import EVIDENCE
 from .evidence import Evidence, residual
 from .grams import Root, roots
 from .masses import BODIES
 from .naming import Scored, chosen
 from .plausibility import NEAR_ZERO
 from .refit import observed_runs, parameters
-from .rows import Rows
 from .selection import Directions
 
 Array = NDArray[np.float64]
@@ -24,47 +27,97 @@ Array = NDArray[np.float64]
 WIDTH = 0.2
 #: What turns links or weighs on them shows in the torque of all joints.
 _OF_THE_ARM = ("joint_elasticity", "encoder_offset", "link_inertial")
-#: One has more of the gain than all others, and more than it should by so many standard deviations.
+#: One place has more of the gain than all others, and more than it should by so many standard deviations.
 MOST, SURE = 0.5, 4.0
+#: Of what a clock's delay should gain on the other joints: with less, theirs is less than 0.7 times as late.
+_OTHERS = 0.4
 
 
-def at_one_place(weighed: Evidence, model: Directions, test: Scored) -> str:
-    """Return in words that a joint's hypothesis, as an addition to a model, gains at one place; or nothing.
+@dataclass(frozen=True)
+class Rowwise:
+    """What a hypothesis does in each row of the observed recordings, by joint; all (n, N).
 
-    weighed: by what it leaves. Left out are ripple, which is seen in the fast band, what acts around zero
-    speed, since joints turn round where their paths do, and slack: a load changes its sign at one angle, too.
+    q: rad; gain: nats; acts: half the squared change of the fit over the noise's variance, which is the gain
+    that is due; left: squared residual with it, over the noise's variance.
+    """
+
+    q: Array
+    gain: Array
+    acts: Array
+    left: Array
+
+    @property
+    def loudness(self) -> float:
+        """The noise's variance where the hypothesis acts, over what it was taken for.
+
+        It is by how much its size is less certain (White 1980, heteroskedasticity-consistent covariance).
+        """
+        return float(np.sum(self.acts * self.left) / max(float(self.acts.sum()), 1e-300))
+
+
+def uneven(weighed: Evidence, model: Directions, test: Scored) -> str:
+    """Return in words that a hypothesis, as an addition to a model, is only some of its rows'; or nothing.
+
+    weighed: by what it leaves. Left out are ripple, which is seen in the fast band, and slack, whose blows
+    are rare and mistimed, and come at one angle where a load changes its sign.
+    """
+    if test.candidate.effect in ("torque_ripple", "backlash"):
+        return ""
+    rows = rowwise(weighed, model, test)
+    return loud(rows, test.evidence) or at_one_place(rows, test) or of_one_joint(rows, test)
+
+
+def loud(rows: Rowwise, nats: float) -> str:
+    """Return in words that nats are fewer than asked, by the noise where the hypothesis acts; or nothing."""
+    if (there := nats / max(rows.loudness, 1.0)) >= EVIDENCE:
+        return ""
+    return f"evidence {there:.1f} nats by the noise where it acts, {EVIDENCE:g} asked"
+
+
+def at_one_place(rows: Rowwise, test: Scored) -> str:
+    """Return in words that a joint's hypothesis gains at one place, or nothing.
+
+    Left out is what acts around zero speed, since joints turn round where their paths do.
     """
     c = test.candidate
-    if c.joint is None or c.effect in ("torque_ripple", "backlash", *NEAR_ZERO):
+    if c.joint is None or c.effect in NEAR_ZERO:
         return ""
-    joints = range(weighed.setup.space.dof) if c.effect in _OF_THE_ARM else (c.joint,)
-    q, gain, acts = np.concatenate(
-        [np.stack([rows.q[:, c.joint], *both]) for rows, *both in _gains(weighed, model, test, joints)],
-        axis=1,
-    )
+    joints = slice(None) if c.effect in _OF_THE_ARM else slice(c.joint, c.joint + 1)
+    gain, acts = (x[:, joints].sum(axis=1) for x in (rows.gain, rows.acts))
     if c.effect in BODIES and gain.sum() <= 0:
         return ""  # masses bend to imitate a body: its evidence is how far they would have to
-    return concentrated(q, gain, acts)
+    return concentrated(rows.q[:, c.joint], gain, acts)
 
 
-def _gains(
-    weighed: Evidence, model: Directions, test: Scored, joints: Sequence[int]
-) -> Iterator[tuple[Rows, Array, Array]]:
-    """Give the rows of each observed run, what each gains on some joints, and should (n,), nats.
+def of_one_joint(rows: Rowwise, test: Scored) -> str:
+    """Return in words that a clock's delay is not that of all joints, or nothing.
 
-    Should: if all rows did what the hypothesis says. weighed: by what it leaves, as an addition to a model.
+    A clock is as late for one joint as for the next.
     """
+    if test.candidate.effect != "time_delay" or test.candidate.joint is not None:
+        return ""
+    gain, acts = rows.gain.sum(axis=0), rows.acts.sum(axis=0)
+    first = int(np.argmax(gain))
+    theirs, due = (float(x.sum() - x[first]) for x in (gain, acts))
+    if theirs < _OTHERS * due and due - theirs > SURE * np.sqrt(2 * due + 1):
+        return f"joints other than {first + 1} gain {100 * theirs / due:.0f} % of what such a delay would"
+    return ""
+
+
+def rowwise(weighed: Evidence, model: Directions, test: Scored) -> Rowwise:
+    """Return what a hypothesis does as an addition to a model, row by row; weighed: by what it leaves."""
     fits = [parameters(weighed, m) for m in (model, chosen(model, weighed, test.candidate))]
+    found = []
     for run in observed_runs(weighed):
         rows = weighed.runs[run]
         whiten = roots(rows, weighed.noise)
-        left = [residual(rows, weighed.setup.space, theta) for theta in fits]
-        first, last = (_whitened(whiten, e, joints) for e in left)
-        yield rows, 0.5 * (first**2 - last**2).sum(axis=1), 0.5 * ((first - last) ** 2).sum(axis=1)
+        first, last = (_whitened(whiten, residual(rows, weighed.setup.space, theta)) for theta in fits)
+        found.append((rows.q, 0.5 * (first**2 - last**2), 0.5 * (first - last) ** 2, last**2))
+    return Rowwise(*(np.concatenate(x) for x in zip(*found, strict=True)))
 
 
-def _whitened(whiten: Sequence[Root], left: Array, joints: Sequence[int]) -> Array:
-    return np.stack([whiten[j] @ left[:, j] for j in joints], axis=1)
+def _whitened(whiten: Sequence[Root], left: Array) -> Array:
+    return np.stack([w @ left[:, j] for j, w in enumerate(whiten)], axis=1)
 
 
 def concentrated(q: Array, gain: Array, acts: Array) -> str:

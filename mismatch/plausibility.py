@@ -13,10 +13,11 @@ from .selection import Directions
 
 Array = NDArray[np.float64]
 
-#: Friction over the angle is a wave unless any curve explains so much more than it.
-NO_WAVE = 0.5
-#: What turns with the drive's torque is an amplifier's where that sign explains so much more.
-DRIVEN = 0.1
+#: Friction over the angle is a wave unless any curve explains so much more than it; and nats at least.
+NO_WAVE = 0.5, APART
+#: What turns with the drive's torque is an amplifier's where that sign explains so much more. It differs from
+#: that of motion in few rows, where a joint brakes hard; forms of friction differ by less of a large change.
+DRIVEN = 0.001, 2 * APART
 #: What friction does around zero speed alone.
 NEAR_ZERO = ("stribeck", "presliding_hysteresis", "velocity_lag")
 #: What builds up with travel or late is much of the Coulomb level, or it is something else; over less travel
@@ -31,8 +32,9 @@ _AHEAD = 1.7
 _LEAST_GAP = 0.3
 #: Nm/rad; a third of the catalogue's softest gear.
 SOFTEST = 1e3
-#: s; current and motion may be less than this apart without anything being wrong: a cycle and a half.
-SYNCHRONOUS = 0.003
+#: s; current and motion may be less than this apart without anything being wrong: a cycle and a half. A
+#: reference holds what the recorder does, but for the cycle in which one began: so much is a change.
+SYNCHRONOUS, SHIFTED = 0.003, 0.0015
 #: Of its size, friction as a whole has to rise by this share above where it ends: else it only starts gently.
 _PEAK = 0.3
 #: Of a joint's friction, a degree: twice the catalogue's steepest fall; warm gears hardly rub more.
@@ -50,7 +52,7 @@ def implausible(evidence: Evidence, test: Scored) -> str:
         return f"moves the arm {test.size[0]:.2g} and {test.size[1]:.2g} times as much as such gears do"
     if c.effect == "joint_elasticity" and not c.whole and test.size[0] * SOFTEST > 1:
         return f"a stiffness of {1 / test.size[0]:.0f} Nm/rad is no gear's"
-    if c.effect == "time_delay" and c.joint is not None and test.size[0] < SYNCHRONOUS:
+    if c.effect == "time_delay" and c.joint is not None and synchronous(evidence, test):
         return f"{1e3 * test.size[0]:.1f} ms late is as recorders have it"
     if c.effect == "temperature_dependent_friction" and c.joint is not None:
         level, surely = evidence.setup.friction[c.joint], 2 * test.std[:2]
@@ -67,6 +69,11 @@ def implausible(evidence: Evidence, test: Scored) -> str:
         if size < (_CHANGED[c.effect] if evidence.has_reference else least) * level:
             return f"is {100 * size / level:.0f} % of the Coulomb level: too little for it"
     return ""
+
+
+def synchronous(evidence: Evidence, test: Scored) -> bool:
+    """Return whether a delay is one that recorders have without anything being wrong."""
+    return bool(test.size[0] < (SHIFTED if evidence.has_reference else SYNCHRONOUS))
 
 
 def near_zero(c: Candidate) -> bool:
@@ -88,12 +95,11 @@ def misshapen(weighed: Evidence, model: Directions, test: Scored) -> tuple[str, 
     c = test.candidate
     if c.joint is None:
         return "", ()
-    over, part = "drive sign", DRIVEN
+    over, (part, least) = "drive sign", DRIVEN
     if c.effect == "position_dependent_friction":
-        over, part = "q sign", NO_WAVE
-    least = max(APART, part * test.evidence)
+        over, (part, least) = "q sign", NO_WAVE
     curve = curve_over(weighed, over, c.joint)
-    if (lead := worth(weighed, model, curve) - test.evidence) > least:
+    if (lead := worth(weighed, model, curve) - test.evidence) > max(least, part * test.evidence):
         what = {"q sign": "a curve over the angle that is no wave", "drive sign": "the torque's own sign"}
         return f"{what[over]} explains {lead:.0f} nats more", curve.columns
     return "", ()
@@ -141,13 +147,19 @@ def of_all_joints(weighed: Evidence, model: Directions, test: Scored) -> str:
 
 
 def of_friction(weighed: Evidence, model: Directions, test: Scored) -> str:
-    """Return in words that friction alone is late, and not the current with all it carries; or nothing."""
+    """Return in words that friction alone is late, and not the current with all it carries; or nothing.
+
+    Without a reference that has to be told: gears differ around standstill, and currents do not.
+    """
     c = test.candidate
     if c.effect != "time_delay" or c.joint is None:
         return ""
-    alone = Candidate("velocity_lag", c.joint, weighed.found.late_friction[c.joint])
-    lead = worth(weighed, model, alone) - test.evidence
-    return f"friction alone that is late explains {lead:.0f} nats more" if lead >= APART else ""
+    signs = [x.columns for x in weighed.found.each if x.key == ("velocity_lag", c.joint)]
+    alone = [Candidate("velocity_lag", c.joint, x) for x in (weighed.found.late_friction[c.joint], *signs)]
+    lead = max(s.evidence for s in scored(weighed, model, alone)) - test.evidence
+    if lead < (APART if weighed.has_reference else -APART):
+        return ""
+    return f"friction alone that is late explains {abs(lead):.0f} nats {'more' if lead > 0 else 'less only'}"
 
 
 def _lateness(lag: Scored, level: Array) -> float:

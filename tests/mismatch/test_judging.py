@@ -11,7 +11,7 @@ from residuum.mismatch.candidates import Candidate
 from residuum.mismatch.judging import Accepted, bodies_first, shadow
 from residuum.mismatch.masses import unmoved
 from residuum.mismatch.naming import APART, Scored
-from residuum.mismatch.plausibility import SYNCHRONOUS, everyones, implausible
+from residuum.mismatch.plausibility import SHIFTED, SYNCHRONOUS, everyones, implausible
 from residuum.mismatch.share import Share
 from residuum.mismatch.simplest import likelier, told_apart
 
@@ -126,10 +126,12 @@ def test_a_delay_makes_signs_late_and_a_lag_beside_it_is_none() -> None:
 
 def test_a_delay_of_one_joint_is_longer_than_recorders_have_it_and_covers_that_joint_alone() -> None:
     one = Candidate("time_delay", 1, (0,), (("around", 0.01),))
-    evidence = SimpleNamespace(setup=SimpleNamespace(friction=np.ones((2, 2))), has_reference=True)
-    for size, believed in ((0.9 * SYNCHRONOUS, False), (1.1 * SYNCHRONOUS, True)):
-        test = Scored(one, np.ones(4), 50.0, np.array([size]), np.ones(1))
-        assert (implausible(evidence, test) == "") == believed
+    for reference, least in ((True, SHIFTED), (False, SYNCHRONOUS)):
+        setup = SimpleNamespace(friction=np.ones((2, 2)))
+        evidence = SimpleNamespace(setup=setup, has_reference=reference)
+        for size, believed in ((0.9 * least, False), (1.1 * least, True)):
+            test = Scored(one, np.ones(4), 50.0, np.array([size]), np.ones(1))
+            assert (implausible(evidence, test) == "") == believed
     delay = [Accepted(scored([9, 11], candidate=one), (), (), 0.5)]
     here, elsewhere = (scored([9, 11], candidate=Candidate("velocity_lag", j, (2,))) for j in (1, 0))
     clock = [Accepted(scored([9, 11], candidate=Candidate("time_delay", None, (0, 1))), (), (), 0.5)]

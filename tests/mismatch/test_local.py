@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from residuum.mismatch.local import concentrated
+from residuum.mismatch.candidates import Candidate
+from residuum.mismatch.local import Rowwise, concentrated, loud, of_one_joint
+from residuum.mismatch.naming import Scored
 
 N, NOISE = 4000, 1.0
 Q = np.random.default_rng(1).uniform(-2, 2, N)
@@ -34,3 +36,33 @@ def test_what_a_tooth_lends_to_a_wave_is_told_with_its_place(at) -> None:
     said = told(tooth, np.cos(Q - at - 0.4))
     place = float(said.split(" is at ")[1].split()[0])
     assert place == pytest.approx(at, abs=0.11)
+
+
+def rowwise(torque, change) -> Rowwise:
+    """What a change of the fit (n, N) does to torques (n, N) in units of the noise they are taken to have."""
+    gain, left = 0.5 * (torque**2 - (torque - change) ** 2), (torque - change) ** 2
+    return Rowwise(np.zeros_like(torque), gain, 0.5 * change**2, left)
+
+
+@pytest.mark.parametrize("crackle", [1.0, 4.0])
+def test_a_wave_of_as_many_nats_is_none_where_noise_is_loud_at_its_crests(crackle) -> None:
+    """Of a size that its evidence calls sure: 4 times the noise there is a variance of 16."""
+    wave, rng = np.where(np.abs(Q) < 0.3, 1.0, 0.05), np.random.default_rng(3)
+    found = 0.4 * wave
+    torque = found + rng.normal(size=N) * np.where(np.abs(Q) < 0.3, crackle, 1.0)
+    rows = rowwise(torque[:, None], found[:, None])
+    nats = float(rows.acts.sum())
+    assert nats > 40
+    assert rows.loudness == pytest.approx(crackle**2, rel=0.15)
+    assert (loud(rows, nats) == "") == (crackle == 1.0)
+
+
+@pytest.mark.parametrize(("late", "said"), [((1.0, 1.0, 1.0), False), ((3.0, 0.0, 0.0), True)])
+def test_a_clock_is_as_late_for_one_joint_as_for_the_next(late, said) -> None:
+    rng = np.random.default_rng(4)
+    slope = rng.normal(size=(N, 3)) * [0.5, 0.2, 0.2]
+    torque = slope * late + rng.normal(size=(N, 3))
+    delay = float(np.sum(slope * torque) / np.sum(slope**2))
+    test = Scored(Candidate("time_delay", None, (0, 1)), np.ones(4), 50.0, np.array([delay]), np.ones(1))
+    why = of_one_joint(rowwise(torque, slope * delay), test)
+    assert why.startswith("joints other than 1") if said else why == ""
