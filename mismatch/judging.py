@@ -13,7 +13,7 @@ from .candidates import Candidate, Key
 from .coverage import SLOW
 from .evidence import Evidence
 from .firm import beside_firm
-from .local import uneven
+from .local import passing, uneven
 from .masses import BODIES, INERTIAL, MASSES_OFF, Refusals, all_off, unmoved
 from .naming import Scored, at_best, chosen, nuisance, ranked, scored, steadiness
 from .pace import paceless
@@ -159,6 +159,8 @@ def judge(
         if not why:
             why, curve = misshapen(weighed, fitted, test)
             bent += curve
+        if not why and (why := passing(weighed, fitted, test)):
+            bent += test.candidate.columns
         if not why:
             why = of_all_joints(weighed, fitted, test) or yardstick.objection(weighed, fitted, test)
             if why:

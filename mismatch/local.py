@@ -1,9 +1,9 @@
-"""Whether a hypothesis explains all that it acts on, or what one place, one joint or its noise does.
+"""Whether a hypothesis explains all that it acts on, or what one place, joint, time or its noise does.
 
 A damaged tooth acts within a few degrees. What is smooth over the angle takes some of it, and so gains at
 that place alone; what moves all joints may take some of it, and so gains on that joint alone. A cable that
-crackles is loud within a range of angles, and a sum over loud rows is large by chance. Physics gains wherever
-it acts, and more than the noise that is there.
+crackles is loud within a range of angles, and a sum over loud rows is large by chance; what jumps within a
+recording was not there before. Physics gains wherever it acts, and more than the noise that is there.
 """
 
 from collections.abc import Sequence
@@ -22,25 +22,34 @@ from .refit import observed_runs, parameters
 from .selection import Directions
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 #: rad; width of a place. Places overlap by half.
 WIDTH = 0.2
+#: Left out are ripple, which is seen in the fast band, and slack, whose blows are rare and mistimed, and come
+#: at one angle where a load changes its sign.
+_APART = ("torque_ripple", "backlash")
 #: What turns links or weighs on them shows in the torque of all joints.
 _OF_THE_ARM = ("joint_elasticity", "encoder_offset", "link_inertial")
 #: One place has more of the gain than all others, and more than it should by so many standard deviations.
 MOST, SURE = 0.5, 4.0
+#: Of what acts in all recordings at least this part is before some time, or after it, where less than this
+#: part of it is there.
+_PART, _THERE = 0.2, 0.2
 #: Of what a clock's delay should gain on the other joints: with less, theirs is less than 0.7 times as late.
 _OTHERS = 0.4
 
 
 @dataclass(frozen=True)
 class Rowwise:
-    """What a hypothesis does in each row of the observed recordings, by joint; all (n, N).
+    """What a hypothesis does in each row of the observed recordings, by joint; arrays (n, N).
 
-    q: rad; gain: nats; acts: half the squared change of the fit over the noise's variance, which is the gain
-    that is due; left: squared residual with it, over the noise's variance.
+    starts (R,): each recording's first row; q: rad; gain: nats; acts: half the squared change of the fit
+    over the noise's variance, which is the gain that is due; left: squared residual with it, over the noise's
+    variance.
     """
 
+    starts: Indices
     q: Array
     gain: Array
     acts: Array
@@ -58,13 +67,20 @@ class Rowwise:
 def uneven(weighed: Evidence, model: Directions, test: Scored) -> str:
     """Return in words that a hypothesis, as an addition to a model, is only some of its rows'; or nothing.
 
-    weighed: by what it leaves. Left out are ripple, which is seen in the fast band, and slack, whose blows
-    are rare and mistimed, and come at one angle where a load changes its sign.
+    weighed: by what it leaves.
     """
-    if test.candidate.effect in ("torque_ripple", "backlash"):
+    if test.candidate.effect in _APART:
         return ""
     rows = rowwise(weighed, model, test)
     return loud(rows, test.evidence) or at_one_place(rows, test) or of_one_joint(rows, test)
+
+
+def passing(weighed: Evidence, model: Directions, test: Scored) -> str:
+    """Return in words that a hypothesis, beside a model, begins or ends within recordings, or nothing.
+
+    weighed: by what it leaves.
+    """
+    return "" if test.candidate.effect in _APART else for_a_time(rowwise(weighed, model, test))
 
 
 def loud(rows: Rowwise, nats: float) -> str:
@@ -104,6 +120,23 @@ def of_one_joint(rows: Rowwise, test: Scored) -> str:
     return ""
 
 
+def for_a_time(rows: Rowwise) -> str:
+    """Return in words that a hypothesis begins or ends within recordings, or nothing.
+
+    Where it is not, it loses as much as it should gain. All recordings with such a time count together.
+    """
+    gain, acts = rows.gain.sum(axis=1), rows.acts.sum(axis=1)
+    lost = absent = 0.0
+    for g, a in zip(*(np.split(x, rows.starts[1:]) for x in (gain, acts)), strict=True):
+        for own, due in ((g.cumsum(), a.cumsum()), (g[::-1].cumsum(), a[::-1].cumsum())):
+            k = int(np.argmin(own))
+            if own[k] < (2 * _THERE - 1) * due[k] and due[k] < (1 - _PART) * due[-1]:
+                lost, absent = lost - float(own[k]), absent + float(due[k])
+    if absent < _PART * float(acts.sum()) or lost < EVIDENCE:
+        return ""
+    return f"is not there in {100 * absent / acts.sum():.0f} % of the time in which it would show"
+
+
 def rowwise(weighed: Evidence, model: Directions, test: Scored) -> Rowwise:
     """Return what a hypothesis does as an addition to a model, row by row; weighed: by what it leaves."""
     fits = [parameters(weighed, m) for m in (model, chosen(model, weighed, test.candidate))]
@@ -113,7 +146,8 @@ def rowwise(weighed: Evidence, model: Directions, test: Scored) -> Rowwise:
         whiten = roots(rows, weighed.noise)
         first, last = (_whitened(whiten, residual(rows, weighed.setup.space, theta)) for theta in fits)
         found.append((rows.q, 0.5 * (first**2 - last**2), 0.5 * (first - last) ** 2, last**2))
-    return Rowwise(*(np.concatenate(x) for x in zip(*found, strict=True)))
+    lengths = [len(q) for q, *_ in found]
+    return Rowwise(np.cumsum([0, *lengths[:-1]]), *(np.concatenate(x) for x in zip(*found, strict=True)))
 
 
 def _whitened(whiten: Sequence[Root], left: Array) -> Array:

@@ -1,10 +1,12 @@
 """Physics gains wherever it acts; what one damaged tooth lends it, it gains at that place alone."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from residuum.mismatch.candidates import Candidate
-from residuum.mismatch.local import Rowwise, concentrated, loud, of_one_joint
+from residuum.mismatch.local import Rowwise, concentrated, for_a_time, loud, of_one_joint
 from residuum.mismatch.naming import Scored
 
 N, NOISE = 4000, 1.0
@@ -41,7 +43,7 @@ def test_what_a_tooth_lends_to_a_wave_is_told_with_its_place(at) -> None:
 def rowwise(torque, change) -> Rowwise:
     """What a change of the fit (n, N) does to torques (n, N) in units of the noise they are taken to have."""
     gain, left = 0.5 * (torque**2 - (torque - change) ** 2), (torque - change) ** 2
-    return Rowwise(np.zeros_like(torque), gain, 0.5 * change**2, left)
+    return Rowwise(np.array([0]), np.zeros_like(torque), gain, 0.5 * change**2, left)
 
 
 @pytest.mark.parametrize("crackle", [1.0, 4.0])
@@ -66,3 +68,21 @@ def test_a_clock_is_as_late_for_one_joint_as_for_the_next(late, said) -> None:
     test = Scored(Candidate("time_delay", None, (0, 1)), np.ones(4), 50.0, np.array([delay]), np.ones(1))
     why = of_one_joint(rowwise(torque, slope * delay), test)
     assert why.startswith("joints other than 1") if said else why == ""
+
+
+@pytest.mark.parametrize("runs", [1, 3])
+@pytest.mark.parametrize(("absent", "said"), [(0.0, False), (0.1, False), (0.5, True)])
+def test_what_begins_within_recordings_was_not_there_before(absent, said, runs) -> None:
+    """A tenth of the time is no reason, and neither is a recording as a whole."""
+    there = np.where(np.arange(N) < absent * N, 0.0, 0.3)
+    torque = np.tile(there, runs) + np.random.default_rng(5).normal(size=runs * N)
+    change = np.full_like(torque, torque.mean())
+    rows = replace(rowwise(torque[:, None], change[:, None]), starts=np.arange(runs) * N)
+    assert bool(for_a_time(rows)) == said
+
+
+def test_a_recording_without_it_is_none_in_which_it_begins() -> None:
+    torque = np.concatenate([np.zeros(N), np.full(N, 0.3)]) + np.random.default_rng(6).normal(size=2 * N)
+    rows = rowwise(torque[:, None], np.full((2 * N, 1), torque.mean()))
+    assert for_a_time(rows)
+    assert not for_a_time(replace(rows, starts=np.array([0, N])))
