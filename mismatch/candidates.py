@@ -46,8 +46,8 @@ LATE_LEVEL = 1.5
 WHOLE, BEYOND = (0.6, 1.3), 0.2
 #: Of the wide prior of base parameters: how much a body may change them, by little or by much. A width that
 #: fits much would cost one that is a few percent off 30 nats. Without a reference little is what masses that
-#: are all off do, and what friction's bends leave.
-BY_LITTLE, BY_MUCH = 0.1, 3.0
+#: are all off do, and what friction's bends leave. A load may be many times what the wrist weighs.
+BY_LITTLE, BY_MUCH, LOADED = 0.1, 3.0, 50.0
 
 
 @dataclass(frozen=True)
@@ -246,7 +246,7 @@ def _inertial(
 ) -> None:  # fmt: skip
     """Directions of a link's ten parameters, of a payload (the last link's) and of each rotor.
 
-    widths: of the priors of a link's and a payload's, each a hypothesis of its own.
+    widths: of the priors of a link's and a payload's, each a hypothesis of its own; a payload has one more.
     """
 
     def lifted(direction: Array) -> Array:
@@ -260,8 +260,8 @@ def _inertial(
         basis, sizes, _ = np.linalg.svd(own / base_std[:, None], full_matrices=False)
         # combinations in units of the priors of the base parameters that they change
         some = [lifted(base_std * x) for x in basis.T[sizes > 1e-6 * max(sizes[0], 1e-12)]]
-        effect = "payload" if link == n - 1 else "link_inertial"
-        for width in widths if some else ():
+        effect, more = ("payload", (LOADED,)) if link == n - 1 else ("link_inertial", ())
+        for width in (*widths, *more) if some else ():
             columns = tuple(add(x, width) for x in some)
             each.append(Candidate(effect, None if effect == "payload" else link, columns))
     for j in range(n):
