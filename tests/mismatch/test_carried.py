@@ -10,7 +10,7 @@ from rows_by_hand import rows, scales
 from residuum.mismatch.carried import carried, handled, unloaded
 from residuum.mismatch.evidence import Evidence, gather, renewed
 from residuum.mismatch.explain import Task, explain
-from residuum.mismatch.load_checks import LONG, _beside_one_joint, _longest
+from residuum.mismatch.load_checks import LONG, _beside_one_joint, _longest, _on_each_joint
 from residuum.mismatch.physics import forces
 from residuum.mismatch.quantities import payload_directions, payload_numbers
 from residuum.mismatch.segments import first_guesses, joined, segmented, stretches, sums_of, two_levels
@@ -236,3 +236,15 @@ def test_a_stretch_is_as_long_as_it_shows_the_load(shown, longest) -> None:
     assert which.step == pytest.approx(1 / 60)
     assert _longest(held) == pytest.approx(longest)
     assert (longest < LONG) == (shown < 1.0)
+
+
+@pytest.mark.parametrize(("aside", "joint"), [(0.0, ""), (13.0, "joint 1"), (1.0, "")])
+def test_a_load_explains_every_joint_that_shows_it(aside, joint) -> None:
+    """A push that mostly points down pushes joint 1 aside, which no load does; a little of it is noise."""
+    which, rng = rows(600, joints=3, moving=np.ones((600, 3))), np.random.default_rng(5)
+    there = np.arange(600) % 200 < 60
+    load = np.tile([0.1, 26.0, 19.0], (600, 1)) * there[:, None]
+    left = load + aside * np.outer(there, [1.0, 0.0, 0.0]) + rng.normal(size=(600, 3))
+    found = SimpleNamespace(runs=(SimpleNamespace(rows=which),), held=(there,), left=[left], load=[load])
+    why = _on_each_joint(found)
+    assert why.endswith(joint) if joint else why == ""
