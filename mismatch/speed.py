@@ -42,10 +42,8 @@ def _smooth(recording: Recording, kernel: Kernel, sources: Mapping[int, Array]) 
     time, slopes = recording.timestamp, tuple(sources)
     filtering, found = Filter(kernel), [np.zeros_like(x) for x in sources.values()]
     for stretch in segments(time, GAP / recording.rate):
-        own, pairs = (
-            time[stretch],
-            [(x[stretch], y[stretch]) for x, y in zip(sources.values(), found, strict=True)],
-        )
+        own = time[stretch]
+        pairs = [(x[stretch], y[stretch]) for x, y in zip(sources.values(), found, strict=True)]
         if len(own) < 4:
             continue
         for some, samples in batches(own, own, kernel):
