@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from .candidates import Candidate, Key
 from .coverage import SLOW
 from .evidence import Evidence
 from .firm import beside_firm
-from .local import passing, uneven
+from .local import Rowwise, passing, rowwise, uneven
 from .masses import BODIES, INERTIAL, MASSES_OFF, Refusals, all_off, unmoved
 from .naming import Scored, at_best, chosen, nuisance, ranked, scored, steadiness
 from .pace import paceless
@@ -150,7 +150,8 @@ def judge(
         part = share_of(weighed, fitted, test)
         if why := of_friction(weighed, fitted, test):
             hollow.add(best.candidate.key)
-        why = why or _refused(weighed, fitted, test, part, accepted)
+        made = cache(partial(rowwise, weighed, fitted, test))  # once, and only if it comes to that
+        why = why or _refused(weighed, fitted, test, part, accepted, made)
         tries += 1
         if why and not (accepted or bent):
             early[best.candidate.key] = best.evidence, test, why
@@ -159,7 +160,7 @@ def judge(
         if not why:
             why, curve = misshapen(weighed, fitted, test)
             bent += curve
-        if not why and (why := passing(weighed, fitted, test)):
+        if not why and (why := passing(made, test)):
             bent += test.candidate.columns
         if not why:
             why = of_all_joints(weighed, fitted, test) or yardstick.objection(weighed, fitted, test)
@@ -183,15 +184,19 @@ def _is_finding(evidence: Evidence, test: Scored) -> bool:
 
 
 def _refused(
-    weighed: Evidence, model: Directions, test: Scored, part: Share, accepted: Sequence[Accepted]
-) -> str:
-    """Return in words why a tested hypothesis is no name; part: what it explains of what is left."""
+    weighed: Evidence, model: Directions, test: Scored, part: Share, accepted: Sequence[Accepted],
+    made: Callable[[], Rowwise],
+) -> str:  # fmt: skip
+    """Return in words why a tested hypothesis is no name.
+
+    part: what it explains of what is left; made: gives what it does row by row.
+    """
     return (
         objection(test, part)
         or implausible(weighed, test)
         or shadow(test, accepted, weighed.setup.space.dof)
         or bodiless(weighed, model, test)
-        or uneven(weighed, model, test)
+        or uneven(made, test)
         or paceless(weighed, model, test)
         or peakless(weighed, model, test)
     )

@@ -124,7 +124,8 @@ def _beside_one_joint(found: Held) -> float:
     """
     each = zip(found.runs, found.load, strict=True)
     nats = sum(
-        np.sum(weights(x.rows, found.evidence.noise) * y**2 * (regime(x.rows) < 2), axis=0) for x, y in each
+        np.sum(weights(x.rows, found.evidence.noise) * y**2 * (regime(x.rows) < REST), axis=0)
+        for x, y in each
     )
     return 0.5 * float(np.sum(nats) - np.max(nats))
 

@@ -6,7 +6,7 @@ crackles is loud within a range of angles, and a sum over loud rows is large by 
 recording was not there before. Physics gains wherever it acts, and more than the noise that is there.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,7 +28,7 @@ Indices = NDArray[np.int64]
 WIDTH = 0.2
 #: Left out are ripple, which is seen in the fast band, and slack, whose blows are rare and mistimed, and come
 #: at one angle where a load changes its sign.
-_APART = ("torque_ripple", "backlash")
+_EXEMPT = ("torque_ripple", "backlash")
 #: What turns links or weighs on them shows in the torque of all joints.
 _OF_THE_ARM = ("joint_elasticity", "encoder_offset", "link_inertial")
 #: One place has more of the gain than all others, and more than it should by so many standard deviations.
@@ -64,23 +64,17 @@ class Rowwise:
         return float(np.sum(self.acts * self.left) / max(float(self.acts.sum()), 1e-300))
 
 
-def uneven(weighed: Evidence, model: Directions, test: Scored) -> str:
-    """Return in words that a hypothesis, as an addition to a model, is only some of its rows'; or nothing.
-
-    weighed: by what it leaves.
-    """
-    if test.candidate.effect in _APART:
+def uneven(made: Callable[[], Rowwise], test: Scored) -> str:
+    """Return in words that a hypothesis is only some of its rows', or nothing. made: gives what it does."""
+    if test.candidate.effect in _EXEMPT:
         return ""
-    rows = rowwise(weighed, model, test)
+    rows = made()
     return loud(rows, test.evidence) or at_one_place(rows, test) or of_one_joint(rows, test)
 
 
-def passing(weighed: Evidence, model: Directions, test: Scored) -> str:
-    """Return in words that a hypothesis, beside a model, begins or ends within recordings, or nothing.
-
-    weighed: by what it leaves.
-    """
-    return "" if test.candidate.effect in _APART else for_a_time(rowwise(weighed, model, test))
+def passing(made: Callable[[], Rowwise], test: Scored) -> str:
+    """Return in words that a hypothesis begins or ends within recordings, or nothing; made: see `uneven`."""
+    return "" if test.candidate.effect in _EXEMPT else for_a_time(made())
 
 
 def loud(rows: Rowwise, nats: float) -> str:
@@ -123,7 +117,8 @@ def of_one_joint(rows: Rowwise, test: Scored) -> str:
 def for_a_time(rows: Rowwise) -> str:
     """Return in words that a hypothesis begins or ends within recordings, or nothing.
 
-    Where it is not, it loses as much as it should gain. All recordings with such a time count together.
+    Where a part r of it is there, it gains 2 r - 1 times what is due: where nothing is, it loses as much. All
+    recordings with such a time count together.
     """
     gain, acts = rows.gain.sum(axis=1), rows.acts.sum(axis=1)
     lost = absent = 0.0

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from .candidates import Candidate
+from .candidates import Candidate, of_key
 from .evidence import Evidence
 from .flexible import names
 from .naming import APART, CLEAR, Scored, chosen, scored, worth
@@ -154,8 +154,8 @@ def of_friction(weighed: Evidence, model: Directions, test: Scored) -> str:
     c = test.candidate
     if c.effect != "time_delay" or c.joint is None:
         return ""
-    signs = [x.columns for x in weighed.found.each if x.key == ("velocity_lag", c.joint)]
-    alone = [Candidate("velocity_lag", c.joint, x) for x in (weighed.found.late_friction[c.joint], *signs)]
+    late = Candidate("velocity_lag", c.joint, weighed.found.late_friction[c.joint])
+    alone = [late, *of_key(weighed.found.each, late.key)]
     lead = max(s.evidence for s in scored(weighed, model, alone)) - test.evidence
     if lead < (APART if weighed.has_reference else -APART):
         return ""
